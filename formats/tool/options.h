@@ -1,0 +1,68 @@
+/* options.h - one table of options per tool: parsing, --help, and later man pages and completion.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef PARIAN_TOOL_OPTIONS_H
+#define PARIAN_TOOL_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "parian/result.h"
+
+typedef enum parian_option_kind {
+    PARIAN_OPTION_FLAG,   /* --name            bool * */
+    PARIAN_OPTION_STRING, /* --name VALUE      const char ** */
+    PARIAN_OPTION_LIST,   /* --name VALUE ...  parian_string_list *, repeatable */
+    PARIAN_OPTION_COUNT,  /* --name N          uint32_t *, within [minimum, maximum] */
+    PARIAN_OPTION_NUMBER, /* --name X          double *, within [minimum, maximum] */
+    PARIAN_OPTION_LENGTH, /* --name 50mm       double *, metres; units um mm cm m */
+    PARIAN_OPTION_CHOICE, /* --name a|b|c      int *, index into choices */
+    PARIAN_OPTION_LATER   /* known, not built yet: refused with exit 5, absent from help */
+} parian_option_kind;
+
+enum { PARIAN_STRING_LIST_MAX = 256 };
+typedef struct parian_string_list {
+    const char *item[PARIAN_STRING_LIST_MAX];
+    size_t count;
+} parian_string_list;
+
+typedef struct parian_option {
+    const char *name;  /* "--scale", "-o" */
+    const char *alias; /* other spelling, or NULL */
+    parian_option_kind kind;
+    void *value;
+    const char *argument; /* for help: "LEN" */
+    const char *help;     /* one or more sentences, with the default in parentheses */
+    double minimum, maximum; /* COUNT, NUMBER: both 0 is no limit */
+    const char *choices;     /* CHOICE: "dipole|dipole-flux" */
+    bool *given;             /* set when the option was given; may be NULL */
+} parian_option;
+
+typedef struct parian_command {
+    const char *tool;      /* "parian-bake" */
+    const char *usage;     /* "INPUT -o OUT.parian [options]" */
+    const char *summary;   /* what it does, a few lines */
+    const char *epilogue;  /* examples; may be NULL */
+    const parian_option *options;
+    size_t option_count;
+} parian_command;
+
+/* The options that every tool has; they are parsed and printed with those of the command. */
+typedef struct parian_common_options {
+    bool quiet, verbose, help, version;
+    unsigned threads;  /* 0: all */
+    int progress;      /* auto, bar, json, none */
+} parian_common_options;
+
+/* Parse argv[first..argc). Positional arguments go to `positional`. "--name=value" works too; "--" ends
+ * options; "-" is positional. On a mistake prints one line to stderr (what, and "see TOOL --help") and returns
+ * PARIAN_E_ARGUMENT or, for LATER, PARIAN_E_UNSUPPORTED. --help and --version print to stdout and
+ * set common->help or ->version: the caller then exits with 0. */
+parian_result parian_options_parse(const parian_command *command, parian_common_options *common,
+                                   parian_string_list *positional, int argc, char **argv, int first);
+
+/* "50mm" -> 0.05. PARIAN_E_ARGUMENT unless a positive finite number with a unit. */
+parian_result parian_parse_length(const char *text, double *metres);
+
+#endif

@@ -1,0 +1,144 @@
+/* runtime.h - relighting translucent bodies from a .parian asset, with OpenGL 3.3 core or OpenGL ES 3.0,
+ * or in plain C.
+ *
+ *   parian_scene    an asset in memory; plain data, may serve many renderers and threads
+ *   parian_renderer one scene in one GL context (or none: the C evaluation), with lights and settings
+ *
+ * Only what changed is recomputed: lights -> E, B and picture; camera -> picture alone.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef PARIAN_RUNTIME_H
+#define PARIAN_RUNTIME_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "parian/env.h"
+#include "parian/light.h"
+#include "parian/result.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- scene ------------------------------------------------------------------------------------- */
+typedef struct parian_scene parian_scene;
+
+/* Read and validate an asset. Errors: PARIAN_E_IO, PARIAN_E_FORMAT, PARIAN_E_UNSUPPORTED, PARIAN_E_NOMEM.
+ * env is copied; its functions must outlive the scene. */
+parian_result parian_scene_open(const parian_env *env, const char *path, parian_scene **scene);
+void parian_scene_close(parian_scene *scene);
+
+typedef struct parian_scene_info {
+    uint32_t body_count, surrounding_count;
+    uint64_t texel_count;  /* owned texels of all bodies */
+    uint64_t vertex_count; /* transfer vertices of all bodies */
+    float lower[3], upper[3];   /* bounds of everything, metres */
+    float body_lower[3], body_upper[3]; /* bounds of the bodies */
+    const char *lights_json; /* default lights in the lights-file form, or NULL; lives with the scene */
+} parian_scene_info;
+parian_scene_info parian_scene_get_info(const parian_scene *scene);
+
+/* ---- renderer ---------------------------------------------------------------------------------- */
+typedef struct parian_renderer parian_renderer;
+
+typedef enum parian_backend { PARIAN_BACKEND_GL = 0, PARIAN_BACKEND_CPU = 1 } parian_backend;
+
+typedef struct parian_renderer_desc {
+    parian_backend backend;
+    /* GL: function loading of the current context, which must be OpenGL 3.3 core or OpenGL ES 3.0 or later
+     * and current in every call on this renderer. */
+    void *(*get_proc_address)(const char *name);
+    uint32_t shadow_size;     /* side of a shadow map, texels; 0 takes 2048 */
+    uint64_t memory_budget;   /* bytes of GL memory; 0 is no limit */
+} parian_renderer_desc;
+
+/* Errors: PARIAN_E_ARGUMENT, PARIAN_E_UNSUPPORTED (GL version or extension, named in the log),
+ * PARIAN_E_NOMEM, PARIAN_E_DEVICE. The scene must outlive the renderer. */
+parian_result parian_renderer_create(const parian_env *env, const parian_scene *scene,
+                                     const parian_renderer_desc *desc, parian_renderer **renderer);
+void parian_renderer_destroy(parian_renderer *renderer);
+
+/* "Mesa llvmpipe ..., OpenGL ES 3.0", or "C evaluation". */
+const char *parian_renderer_name(const parian_renderer *renderer);
+uint64_t parian_renderer_memory(const parian_renderer *renderer); /* bytes of GL memory in use */
+
+/* Replace the lights (copied, images included). Types that this renderer cannot do are
+ * PARIAN_E_UNSUPPORTED, lights with absurd numbers PARIAN_E_ARGUMENT; the old lights then stay. */
+parian_result parian_renderer_set_lights(parian_renderer *renderer, const parian_light *lights, size_t count);
+
+typedef enum parian_view_mode {
+    PARIAN_VIEW_COMBINED = 0, /* translucent, with surface reflection */
+    PARIAN_VIEW_LOCAL = 1,    /* scattered light of the local part alone */
+    PARIAN_VIEW_GLOBAL = 2,   /* of the global part alone */
+    PARIAN_VIEW_IRRADIANCE = 3, /* E on the surface, divided by pi */
+    PARIAN_VIEW_OPAQUE = 4,   /* the same total albedo as a Lambertian surface, for comparison */
+    PARIAN_VIEW_NORMALS = 5,
+    PARIAN_VIEW_CHARTS = 6
+} parian_view_mode;
+
+typedef struct parian_settings { /* zero is default */
+    parian_view_mode view;
+    bool no_specular;      /* leave the surface reflection out */
+    bool no_albedo;        /* ignore the surface texture T_p */
+    bool no_normal_map;
+    float roughness;       /* of the specular lobe (GGX alpha = roughness^2); 0 takes 0.35 */
+    float background[3];   /* radiance behind everything */
+} parian_settings;
+parian_result parian_renderer_set_settings(parian_renderer *renderer, const parian_settings *settings);
+
+/* Bring E and B up to date with lights and settings; does nothing when nothing changed. */
+parian_result parian_renderer_relight(parian_renderer *renderer);
+
+/* Column-major matrices as OpenGL takes them. */
+typedef struct parian_camera {
+    float view[16];
+    float projection[16];
+} parian_camera;
+
+typedef struct parian_draw_desc {
+    parian_camera camera;
+    uint32_t width, height; /* pixels, 1 to 16384 */
+    bool exposure_auto;     /* from the log-average luminance */
+    float exposure_ev;      /* picture is scaled by 2^ev before the tone curve (after auto, if on) */
+    /* GL: framebuffer that receives the tone-mapped sRGB picture (0: the default one); (uint32_t)-1: none. */
+    uint32_t framebuffer;
+} parian_draw_desc;
+
+/* Relight if needed, shade, tone-map. Threads: the context's thread. */
+parian_result parian_renderer_draw(parian_renderer *renderer, const parian_draw_desc *desc);
+
+/* Pictures of the last draw, rows from top to bottom: linear radiance with coverage in alpha
+ * [height * width][4], and 8-bit sRGB after exposure and tone curve [height * width][4]. Either may be NULL. */
+parian_result parian_renderer_read_picture(parian_renderer *renderer, float (*radiance)[4], uint8_t (*srgb)[4]);
+
+/* Per-texel arrays of the whole scene, bodies one after the other, owned texels only, SI units. Each may be
+ * NULL. local + global = radiosity (before the surface texture). Relights if needed. */
+typedef struct parian_texel_arrays {
+    float (*position)[3];
+    float (*normal)[3];
+    float *area;
+    float (*irradiance)[3]; /* E, transmitted, W m^-2 */
+    float (*radiosity)[3];  /* B, W m^-2 */
+    float (*radiosity_local)[3];
+    float (*radiosity_global)[3];
+} parian_texel_arrays;
+parian_result parian_renderer_read_texels(parian_renderer *renderer, const parian_texel_arrays *arrays);
+
+/* Time of each pass in the last relight and draw: milliseconds until the work was finished (GL: with a
+ * glFinish around each pass when timing is on, which slows the whole). */
+typedef struct parian_pass_time {
+    const char *name; /* "shadow", "irradiance", "restrict", "product", "filter", "gutter", "shade", "tone" */
+    double ms;
+    uint64_t runs; /* since the renderer was created: proves what was recomputed */
+} parian_pass_time;
+enum { PARIAN_PASS_MAX = 16 };
+void parian_renderer_set_timing(parian_renderer *renderer, bool on);
+size_t parian_renderer_get_times(const parian_renderer *renderer, parian_pass_time times[PARIAN_PASS_MAX]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
