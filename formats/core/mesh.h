@@ -35,4 +35,13 @@ void parian_mesh_bounds(const parian_mesh *mesh, double lower[3], double upper[3
  * the others; allocates mesh->corner_normal (replacing it). Errors: PARIAN_E_NOMEM. */
 parian_result parian_mesh_make_corner_normals(const parian_env *env, parian_mesh *mesh, double crease_deg);
 
+/* The half-edge across every edge: neighbour[t][k] = 3 * t2 + k2 where edge k of t (corner k to corner k + 1) is
+ * edge k2 of t2 in the opposite direction; PARIAN_NO_NEIGHBOUR at a boundary, at an edge of more than two
+ * triangles, and where orientations disagree. triangle, neighbour: [triangle_count].
+ * Errors: PARIAN_E_NOMEM. */
+enum { PARIAN_NO_NEIGHBOUR = 0xFFFFFFFFu };
+parian_result parian_triangle_neighbours(const parian_env *env, uint32_t vertex_count,
+                                         uint32_t triangle_count, const uint32_t (*triangle)[3],
+                                         uint32_t (*neighbour)[3]);
+
 #endif
