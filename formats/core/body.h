@@ -25,13 +25,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "core/half.h"
 #include "core/medium.h"
 #include "core/mesh.h"
 #include "parian/env.h"
 #include "parian/result.h"
-
-/* IEEE 754 binary16 bits (see half.h). */
-typedef uint16_t parian_half;
 
 /* One sparse operator. Rows are runs of consecutive columns, so that both a CPU and a GPU read factors
  * and inputs as two contiguous streams.
