@@ -32,18 +32,18 @@ typedef struct parian_option {
     const char *alias; /* other spelling, or NULL */
     parian_option_kind kind;
     void *value;
-    const char *argument; /* for help: "LEN" */
-    const char *help;     /* one or more sentences, with the default in parentheses */
+    const char *argument;    /* for help: "LEN" */
+    const char *help;        /* one or more sentences, with the default in parentheses */
     double minimum, maximum; /* COUNT, NUMBER: both 0 is no limit */
     const char *choices;     /* CHOICE: "dipole|dipole-flux" */
     bool *given;             /* set when the option was given; may be NULL */
 } parian_option;
 
 typedef struct parian_command {
-    const char *tool;      /* "parian-bake" */
-    const char *usage;     /* "INPUT -o OUT.parian [options]" */
-    const char *summary;   /* what it does, a few lines */
-    const char *epilogue;  /* examples; may be NULL */
+    const char *tool;     /* "parian-bake" */
+    const char *usage;    /* "INPUT -o OUT.parian [options]" */
+    const char *summary;  /* what it does, a few lines */
+    const char *epilogue; /* examples; may be NULL */
     const parian_option *options;
     size_t option_count;
 } parian_command;
@@ -51,16 +51,17 @@ typedef struct parian_command {
 /* The options that every tool has; they are parsed and printed with those of the command. */
 typedef struct parian_common_options {
     bool quiet, verbose, help, version;
-    unsigned threads;  /* 0: all */
-    int progress;      /* auto, bar, json, none */
+    unsigned threads; /* 0: all */
+    int progress;     /* auto, bar, json, none */
 } parian_common_options;
 
-/* Parse argv[first..argc). Positional arguments go to `positional`. "--name=value" works too; "--" ends
- * options; "-" is positional. On a mistake prints one line to stderr (what, and "see TOOL --help") and returns
- * PARIAN_E_ARGUMENT or, for LATER, PARIAN_E_UNSUPPORTED. --help and --version print to stdout and
- * set common->help or ->version: the caller then exits with 0. */
+/* Parse argv[first..argc). Positional arguments go to `positional`. "--name=value" works too; "--"
+ * ends options; "-" is positional. On a mistake prints one line to stderr (what, and "see TOOL
+ * --help") and returns PARIAN_E_ARGUMENT or, for LATER, PARIAN_E_UNSUPPORTED. --help and --version
+ * print to stdout and set common->help or ->version: the caller then exits with 0. */
 parian_result parian_options_parse(const parian_command *command, parian_common_options *common,
-                                   parian_string_list *positional, int argc, char **argv, int first);
+                                   parian_string_list *positional, int argc, char **argv,
+                                   int first);
 
 /* "50mm" -> 0.05. PARIAN_E_ARGUMENT unless a positive finite number with a unit. */
 parian_result parian_parse_length(const char *text, double *metres);
