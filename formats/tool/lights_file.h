@@ -11,27 +11,37 @@
 #include "parian/light.h"
 #include "parian/result.h"
 
-/* Lights with the pictures they refer to. */
+/* Lights with the pictures they refer to. Directions are made unit vectors; pictures hold finite
+ * numbers from 0. */
 typedef struct parian_light_set {
     parian_light *light;
     size_t count;
 } parian_light_set;
 
+enum { PARIAN_LIGHTS_MAX = 1024 };
+
 void parian_light_set_free(const parian_env *env, parian_light_set *set);
 
-/* Append the lights of a lights file; relative pictures are relative to the file.
- * Errors: PARIAN_E_IO, PARIAN_E_FORMAT with light index and key. */
+/* Each of these appends to the set, or leaves it as it was. One number holds for all three
+ * channels; a spot's outer_deg is 30 and its inner_deg two thirds of that unless given; an
+ * environment with a picture has radiance 1 unless given. Unknown keys are warned of. Errors:
+ * PARIAN_E_IO, PARIAN_E_FORMAT (file, light index, key), PARIAN_E_LIMIT, PARIAN_E_NOMEM. */
+
+/* The lights of a lights file; relative pictures are relative to the file. */
 parian_result parian_lights_read_file(const parian_env *env, const char *path,
                                       parian_light_set *set);
 /* The same from JSON text; folder (may be NULL) is where relative pictures are. */
 parian_result parian_lights_parse(const parian_env *env, const char *json, const char *folder,
                                   parian_light_set *set);
-/* Append one light from "point:0,0.1,0.2:intensity=1", "directional:0,0,-1:irradiance=1,0.9,0.8",
+/* One light from "point:0,0.1,0.2:intensity=1", "directional:0,0,-1:irradiance=1,0.9,0.8",
  * "spot:X,Y,Z:direction=0,0,-1:outer=30:inner=20:image=slide.png:intensity=1",
- * "environment:radiance=1", "environment:sky.exr". Errors: PARIAN_E_ARGUMENT. */
+ * "rect:X,Y,Z:axis_u=0.1,0,0:axis_v=0,0.1,0:radiance=1", "environment:radiance=1",
+ * "environment:sky.exr". Errors: PARIAN_E_ARGUMENT for the text; as above for the picture. */
 parian_result parian_lights_parse_spec(const parian_env *env, const char *spec,
                                        parian_light_set *set);
-/* JSON text of lights without pictures (for an asset's default lights); free with parian_free. */
+
+/* JSON text of lights without pictures (for an asset's default lights); free with parian_free.
+ * Errors: PARIAN_E_UNSUPPORTED (a light has a picture), PARIAN_E_NOMEM. */
 parian_result parian_lights_to_json(const parian_env *env, const parian_light *light, size_t count,
                                     char **json);
 
