@@ -11,6 +11,10 @@
 #include "parian/env.h"
 #include "parian/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Arrays belong to the mesh and are freed by parian_mesh_free with the env they were made with. */
 typedef struct parian_mesh {
     uint32_t vertex_count;
@@ -44,4 +48,7 @@ parian_result parian_triangle_neighbours(const parian_env *env, uint32_t vertex_
                                          uint32_t triangle_count, const uint32_t (*triangle)[3],
                                          uint32_t (*neighbour)[3]);
 
+#ifdef __cplusplus
+}
+#endif
 #endif
