@@ -29,7 +29,7 @@ void *parian_zalloc(const parian_env *env, size_t count, size_t size)
     if (env && env->alloc) {
         ptr = parian_alloc(env, count, size);
         if (ptr) {
-            memset(ptr, 0, count * size ? count * size : 1);
+            memset(ptr, 0, count * size);
         }
         return ptr;
     }

@@ -19,7 +19,8 @@ extern "C" {
 #endif
 
 enum {
-    PARIAN_FORMAT_VERSION = 1,
+    PARIAN_FORMAT_VERSION = 1, /* major: a reader refuses any other */
+    PARIAN_FORMAT_VERSION_MINOR = 0,
     PARIAN_CHUNK_NAME_MAX = 40, /* bytes with the terminating NUL */
     PARIAN_CHUNK_RANK_MAX = 4,
     PARIAN_BLOCK_SIZE = 1 << 20 /* bytes of a block before coding */
@@ -49,6 +50,9 @@ typedef enum parian_codec {
     PARIAN_CODEC_SHUFFLE_ZSTD = 2, /* bytes grouped by significance within a block, then zstd */
     PARIAN_CODEC_DELTA_ZSTD = 3    /* integers: difference to the previous element (mod 2^n), shuffled, zstd */
 } parian_codec;
+
+/* "raw", "zstd", "shuffle+zstd", "delta+zstd"; NULL for an unknown codec. */
+const char *parian_codec_name(parian_codec codec);
 
 enum { PARIAN_CHUNK_REQUIRED = 1u }; /* a reader that does not know the chunk must refuse the file */
 
@@ -88,6 +92,11 @@ parian_result parian_writer_begin(const parian_env *env, const parian_writer_des
  * Errors: PARIAN_E_ARGUMENT, PARIAN_E_IO, PARIAN_E_NOMEM; after an error only abort is allowed. */
 parian_result parian_writer_chunk(parian_writer *writer, const parian_chunk_info *info, const void *data);
 
+/* The env that the writer was begun with, and the temporary file that it writes (to be unlinked by a handler
+ * that ends the process at once). */
+const parian_env *parian_writer_env(const parian_writer *writer);
+const char *parian_writer_temporary(const parian_writer *writer);
+
 /* Write the table, flush, rename. Frees the writer in every case; on error no file is left. */
 parian_result parian_writer_finish(parian_writer *writer);
 
@@ -101,6 +110,7 @@ typedef struct parian_reader parian_reader;
 typedef struct parian_reader_limits {
     uint64_t chunk_count_max;  /* 0 takes 65,536 */
     uint64_t decoded_size_max; /* bytes of one chunk; 0 takes 2^36; never above what the file can hold */
+    uint64_t expansion_max;    /* all chunks together: 64 MiB and this times the file's size; 0 takes 64 */
 } parian_reader_limits;
 
 /* Map and validate the header and table of a file. limits may be NULL.
@@ -117,16 +127,20 @@ void parian_reader_close(parian_reader *reader);
 uint32_t parian_reader_chunk_count(const parian_reader *reader);
 const parian_chunk_info *parian_reader_chunk(const parian_reader *reader, uint32_t index);
 uint64_t parian_reader_file_size(const parian_reader *reader);
+const char *parian_reader_name(const parian_reader *reader); /* the path or name it was opened with */
 /* Index of a chunk, or -1. */
 int64_t parian_reader_find(const parian_reader *reader, const char *name, uint32_t object, uint32_t level);
 
 /* Decode a chunk into destination: [info->size] bytes. Checks every block's checksum. */
 parian_result parian_reader_read(const parian_reader *reader, uint32_t index, void *destination);
+/* Do everything that read does, and keep nothing. */
+parian_result parian_reader_check(const parian_reader *reader, uint32_t index);
 /* Pointer into the mapping of a RAW chunk after its blocks' checksums were verified, without a copy; valid
  * until close. PARIAN_E_UNSUPPORTED for a coded chunk. */
 parian_result parian_reader_map(const parian_reader *reader, uint32_t index, const void **data);
-/* Verify everything that can be verified without the schema: checksums of all blocks, zero padding, no
- * stray or overlapping bytes. The first finding is logged with its rule number and byte offset. */
+/* Verify everything that can be verified without the schema: what open has verified (header, table, zero
+ * padding, no stray or overlapping bytes), and every block. The first finding is logged with its rule number
+ * and byte offset. */
 parian_result parian_reader_verify(const parian_reader *reader);
 
 #ifdef __cplusplus
