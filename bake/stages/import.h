@@ -9,6 +9,10 @@
 #include "core/mesh.h"
 #include "parian/light.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* An 8-bit RGBA picture, rows from top to bottom, sRGB-coded. */
 typedef struct parian_picture {
     uint32_t width, height;
@@ -22,10 +26,11 @@ typedef struct parian_source_material {
     int32_t base_color_picture; /* index into the scene's pictures, or -1 */
     bool has_volume;           /* KHR_materials_volume present */
     bool has_scatter;          /* KHR_materials_scatter or KHR_materials_volume_scatter present */
-    bool new_draft;            /* KHR_materials_volume_scatter: albedo (1-s^2)/(1-g s^2); else 1-s^2 */
+    bool new_draft;            /* KHR_materials_scatter, which replaces KHR_materials_volume_scatter:
+                                * albedo (1-s^2)/(1-g s^2); else 1-s^2 */
     double attenuation_distance; /* metres after node scale; infinity where absent */
     double attenuation_color[3];
-    double multiscatter_color[3];
+    double multiscatter_color[3]; /* times the scatter strength, if any */
     double scatter_anisotropy;
     double ior; /* 1.5 where absent */
 } parian_source_material;
@@ -55,4 +60,7 @@ void parian_source_scene_free(const parian_env *env, parian_source_scene *scene)
  * PARIAN_E_FORMAT. */
 parian_result parian_import(const parian_env *env, const char *path, parian_source_scene *scene);
 
+#ifdef __cplusplus
+}
+#endif
 #endif
