@@ -7,9 +7,9 @@
 
 #include "core/body.h"
 
-/* Fill the texel, gutter and border arrays of a body with an atlas (kernel_width must be set), stored and
- * derived ones. Texel areas are those of clipped triangles and sum to the surface area to rounding.
- * Errors: PARIAN_E_NOMEM, PARIAN_E_INTERRUPTED. */
+/* Fill the texel, gutter and border arrays of a body with an atlas (kernel_width must be set),
+ * stored and derived ones. Texel areas are those of clipped triangles and sum to the surface area
+ * to rounding. Errors: PARIAN_E_NOMEM, PARIAN_E_INTERRUPTED. */
 parian_result parian_stage_texels(const parian_env *env, parian_body *body);
 
 #endif

@@ -1,0 +1,296 @@
+/* border.c - lists the neighbours of texels whose window leaves their chart, across charts.
+ *
+ * A texel is interior when every texel of its window is owned and fully covered by its chart; its
+ * window is then its neighbourhood. All others are border texels and carry a list. Two texels are
+ * neighbours
+ *   - of one chart: when each lies in the other's window;
+ *   - of two charts, which then are both border texels: when their Euclidean distance is at most
+ * that of a disc with the window's area, and their normals do not oppose each other (so lists reach
+ *     around sharp edges but not through thin sheets).
+ * Both rules are symmetric. Lists are counted first and filled afterwards, by slices of border
+ * texels.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bake/stages/texels_parts.h"
+#include "core/memory.h"
+#include "core/small_maths.h"
+
+enum { SLICE = 512, HASH_LOAD = 2 };
+static const float FULL_COVER = 0.999f;
+static const float NORMAL_COSINE_MIN = -0.2f; /* lists reach around an edge of 100 degrees */
+
+typedef struct border_job {
+    const parian_body *body;
+    int32_t half;            /* of the window */
+    float radius2;           /* m^2 */
+    double cell_size;        /* of the hash grid, metres */
+    uint8_t *supported;      /* [side^2] scratch of the erosion, then: interior */
+    uint32_t *bucket_begin;  /* [bucket_count + 1] into bucket_border */
+    uint32_t *bucket_border; /* [border_count] border ordinals, ascending in a bucket */
+    uint32_t bucket_mask;
+    uint32_t border_count;
+    uint32_t *border_texel;
+    uint32_t *offset;    /* [border_count + 1] */
+    uint32_t *neighbour; /* NULL while counting */
+} border_job;
+
+/* Keep what has `half` set cells on both sides, along rows (step 1) or columns (step side). */
+static void erode(uint8_t *map, uint32_t side, size_t step, uint32_t half)
+{
+    size_t across = step == 1 ? side : 1;
+    for (size_t line = 0; line < side; line++) {
+        uint8_t *cell = map + line * across;
+        uint32_t length = 0;
+        for (uint32_t i = 0; i <= side; i++) {
+            if (i < side && cell[i * step]) {
+                length++;
+                continue;
+            }
+            /* A run of set cells ends before i: clear `half` cells at both ends. */
+            for (uint32_t k = 0; k < half && k < length; k++) {
+                cell[(i - 1 - k) * step] = 0;
+                cell[(i - length + k) * step] = 0;
+            }
+            length = 0;
+        }
+    }
+}
+
+/* Find the border texels; supported becomes the map of the interior ones. */
+static parian_result find_border(const parian_env *env, border_job *job, const float *covered)
+{
+    const parian_body *body = job->body;
+    uint32_t side = body->atlas_size;
+    memset(job->supported, 0, (size_t)side * side);
+    for (uint32_t i = 0; i < body->texel_count; i++) {
+        job->supported[body->texel_index[i]] = covered[i] > FULL_COVER;
+    }
+    erode(job->supported, side, 1, (uint32_t)job->half);
+    erode(job->supported, side, side, (uint32_t)job->half);
+    for (uint32_t i = 0; i < body->texel_count; i++) {
+        job->border_count += !job->supported[body->texel_index[i]];
+    }
+    if (!PARIAN_NEW(env, job->border_texel, job->border_count)) {
+        return PARIAN_E_NOMEM;
+    }
+    for (uint32_t i = 0, next = 0; i < body->texel_count; i++) {
+        if (!job->supported[body->texel_index[i]]) {
+            job->border_texel[next++] = i;
+        }
+    }
+    return PARIAN_OK;
+}
+
+/* The radius of a disc with a window's area, from the mean texel. */
+static double window_radius(const parian_body *body, const float *covered)
+{
+    double area = 0.0, cover = 0.0;
+    for (uint32_t i = 0; i < body->texel_count; i++) {
+        area += (double)body->texel_area[i];
+        cover += (double)covered[i];
+    }
+    return body->kernel_width * sqrt(area / fmax(cover, 1e-9) / PARIAN_PI);
+}
+
+static int64_t grid_coordinate(const border_job *job, double x)
+{
+    return (int64_t)floor(x / job->cell_size);
+}
+
+static uint32_t bucket_of(const border_job *job, int64_t x, int64_t y, int64_t z)
+{
+    uint64_t key = (uint64_t)x * 0x9E3779B97F4A7C15u ^ (uint64_t)y * 0xC2B2AE3D27D4EB4Fu ^
+                   (uint64_t)z * 0x165667B19E3779F9u;
+    key ^= key >> 32;
+    key *= 0xD6E8FEB86659FD93u;
+    return (uint32_t)(key >> 32) & job->bucket_mask;
+}
+
+static uint32_t bucket_of_texel(const border_job *job, uint32_t texel)
+{
+    const float *p = job->body->texel_position[texel];
+    return bucket_of(job, grid_coordinate(job, (double)p[0]), grid_coordinate(job, (double)p[1]),
+                     grid_coordinate(job, (double)p[2]));
+}
+
+/* Hash the border texels by their position, cells as wide as the radius. */
+static parian_result fill_hash(const parian_env *env, border_job *job)
+{
+    uint32_t bucket_count = 64;
+    while (bucket_count < HASH_LOAD * (uint64_t)job->border_count && bucket_count < 1u << 30) {
+        bucket_count *= 2;
+    }
+    job->bucket_mask = bucket_count - 1;
+    if (!PARIAN_NEW0(env, job->bucket_begin, (size_t)bucket_count + 2) ||
+        !PARIAN_NEW(env, job->bucket_border, job->border_count)) {
+        return PARIAN_E_NOMEM;
+    }
+    for (uint32_t b = 0; b < job->border_count; b++) {
+        job->bucket_begin[bucket_of_texel(job, job->border_texel[b]) + 2]++;
+    }
+    for (uint32_t i = 0; i < bucket_count; i++) {
+        job->bucket_begin[i + 1] += job->bucket_begin[i];
+    }
+    for (uint32_t b = 0; b < job->border_count; b++) {
+        job->bucket_border[job->bucket_begin[bucket_of_texel(job, job->border_texel[b]) + 1]++] = b;
+    }
+    return PARIAN_OK;
+}
+
+/* Neighbours of the same chart, through the window. */
+static uint32_t list_window(const border_job *job, uint32_t texel, uint32_t *out)
+{
+    const parian_body *body = job->body;
+    int32_t side = (int32_t)body->atlas_size, half = job->half;
+    int32_t u = (int32_t)(body->texel_index[texel] % body->atlas_size);
+    int32_t v = (int32_t)(body->texel_index[texel] / body->atlas_size);
+    uint32_t chart = texel_chart(body, texel), count = 0;
+    for (int32_t y = v > half ? v - half : 0; y <= v + half && y < side; y++) {
+        for (int32_t x = u > half ? u - half : 0; x <= u + half && x < side; x++) {
+            uint32_t other = body->texel_at[(size_t)y * (size_t)side + (size_t)x];
+            if (other != UINT32_MAX && texel_chart(body, other) == chart) {
+                if (out) {
+                    out[count] = other;
+                }
+                count++;
+            }
+        }
+    }
+    return count;
+}
+
+static bool across_charts(const border_job *job, uint32_t texel, uint32_t other)
+{
+    const parian_body *body = job->body;
+    if (texel_chart(body, other) == texel_chart(body, texel) ||
+        parian_distance2f(body->texel_position[texel], body->texel_position[other]) >
+            job->radius2) {
+        return false;
+    }
+    const float *a = body->texel_normal[texel], *b = body->texel_normal[other];
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > NORMAL_COSINE_MIN;
+}
+
+/* Neighbours of other charts, through the hash. Cells that share a bucket are looked through once.
+ */
+static uint32_t list_across(const border_job *job, uint32_t texel, uint32_t *out)
+{
+    uint32_t seen[27], seen_count = 0, count = 0;
+    int64_t at[3];
+    for (int d = 0; d < 3; d++) {
+        at[d] = grid_coordinate(job, (double)job->body->texel_position[texel][d]);
+    }
+    for (int cell = 0; cell < 27; cell++) {
+        uint32_t bucket = bucket_of(job, at[0] + cell % 3 - 1, at[1] + cell / 3 % 3 - 1,
+                                    at[2] + cell / 9 - 1),
+                 k = 0;
+        while (k < seen_count && seen[k] != bucket) {
+            k++;
+        }
+        if (k < seen_count) {
+            continue;
+        }
+        seen[seen_count++] = bucket;
+        for (uint32_t i = job->bucket_begin[bucket]; i < job->bucket_begin[bucket + 1]; i++) {
+            uint32_t other = job->border_texel[job->bucket_border[i]];
+            if (across_charts(job, texel, other)) {
+                if (out) {
+                    out[count] = other;
+                }
+                count++;
+            }
+        }
+    }
+    return count;
+}
+
+static int compare_texels(const void *left, const void *right)
+{
+    uint32_t a = *(const uint32_t *)left, b = *(const uint32_t *)right;
+    return a < b ? -1 : a > b;
+}
+
+/* Count or fill the lists of a slice of border texels. */
+static void list_slice(void *context, size_t slice)
+{
+    border_job *job = context;
+    uint32_t first = (uint32_t)slice * SLICE;
+    uint32_t end = job->border_count - first < SLICE ? job->border_count : first + SLICE;
+    for (uint32_t b = first; b < end; b++) {
+        uint32_t *out = job->neighbour ? job->neighbour + job->offset[b] : NULL;
+        uint32_t count = list_window(job, job->border_texel[b], out);
+        count += list_across(job, job->border_texel[b], out ? out + count : NULL);
+        if (out) {
+            qsort(out, count, sizeof *out, compare_texels);
+        } else {
+            job->offset[b + 1] = count;
+        }
+    }
+}
+
+static parian_result make_lists(const parian_env *env, border_job *job)
+{
+    uint64_t total = 0;
+    size_t slices = (job->border_count + SLICE - 1) / SLICE;
+    if (!PARIAN_NEW0(env, job->offset, (size_t)job->border_count + 1)) {
+        return PARIAN_E_NOMEM;
+    }
+    parian_par(env, slices, list_slice, job);
+    for (uint32_t b = 0; b < job->border_count; b++) {
+        total += job->offset[b + 1];
+        if (total > UINT32_MAX) {
+            return parian_fail(
+                env, PARIAN_E_LIMIT,
+                "the %u border texels have more than 2^32 neighbours within %g m; the "
+                "atlas is too coarse for this surface",
+                job->border_count, sqrt((double)job->radius2));
+        }
+        job->offset[b + 1] = (uint32_t)total;
+    }
+    if (!PARIAN_NEW(env, job->neighbour, total)) {
+        return PARIAN_E_NOMEM;
+    }
+    parian_par(env, slices, list_slice, job);
+    return PARIAN_OK;
+}
+
+parian_result texels_border(const parian_env *env, parian_body *body, const float *covered)
+{
+    border_job job = {.body = body, .half = (int32_t)(body->kernel_width / 2)};
+    double radius = window_radius(body, covered);
+    job.radius2 = (float)(radius * radius);
+    /* A little wider than the radius: no neighbour is lost to rounding at cell faces. */
+    job.cell_size = 1.0001 * radius;
+    parian_result result = PARIAN_E_NOMEM;
+    if (PARIAN_NEW(env, job.supported, (size_t)body->atlas_size * body->atlas_size)) {
+        result = find_border(env, &job, covered);
+    }
+    if (result == PARIAN_OK) {
+        result = fill_hash(env, &job);
+    }
+    if (result == PARIAN_OK) {
+        result = make_lists(env, &job);
+    }
+    if (result == PARIAN_OK) {
+        body->border_count = job.border_count;
+        body->border_texel = job.border_texel;
+        body->border_offset = job.offset;
+        body->border_neighbour = job.neighbour;
+        job.border_texel = job.offset = job.neighbour = NULL;
+    } else if (result == PARIAN_E_NOMEM) {
+        parian_fail(env, result, "no memory for the neighbours of %u border texels",
+                    job.border_count);
+    }
+    parian_free(env, job.neighbour);
+    parian_free(env, job.offset);
+    parian_free(env, job.border_texel);
+    parian_free(env, job.bucket_border);
+    parian_free(env, job.bucket_begin);
+    parian_free(env, job.supported);
+    return result;
+}
