@@ -1,0 +1,115 @@
+/* transfer_mesh_remesh.c - remeshes one component to a wanted number of near-equilateral triangles.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#include "bake/adapters/cgal_remesh.h"
+#include "bake/stages/transfer_mesh_parts.h"
+#include "core/memory.h"
+
+enum { ROUNDS_MIN = 3, ROUNDS_MAX = 12 };
+static const double count_tolerance = 0.015;
+static const double crease_deg = 60.0;
+/* A crease shorter than this many edges of the transfer mesh is noise to it. */
+static const double feature_edges = 6.0;
+/* Remeshing leaves edges between 4/5 and 4/3 of the length asked for, and more of the short ones:
+ * that many more vertices than equilateral triangles of that length would have. */
+static const double count_excess = 1.16;
+
+/* Exponents by which the edge length follows the count. It falls by itself from round to round, and
+ * rises little, because only the longest edges are split. */
+static const double exponent_down = 0.25, exponent_up = 1.5;
+
+/* The edge length of an equilateral triangulation of part->area with part->target vertices. */
+static double edge_for_target(const transfer_part *part)
+{
+    return sqrt(2.0 * part->area / (sqrt(3.0) * part->target));
+}
+
+/* Bring the vertices back to the source after a round. */
+static parian_result bring_back(const parian_env *env, const parian_closest *source,
+                                parian_remesher *remesher, double reach)
+{
+    parian_mesh mesh = {0};
+    bool *on_feature = NULL;
+    parian_result result = parian_remesher_copy(env, remesher, &mesh, &on_feature);
+    if (result == PARIAN_OK) {
+        result = parian_transfer_project(env, source, on_feature, reach, &mesh);
+    }
+    if (result == PARIAN_OK) {
+        parian_remesher_move(remesher, (const double(*)[3])mesh.position);
+    }
+    parian_free(env, on_feature);
+    parian_mesh_free(env, &mesh);
+    return result;
+}
+
+static bool is_met(uint32_t count, uint32_t target)
+{
+    double slack = count_tolerance * target;
+    return fabs((double)count - target) <= (slack > 0.5 ? slack : 0.5);
+}
+
+/* Rounds of remeshing whose edge length follows the count; a round leaves alone what is within its
+ * limits, so that the count answers slowly. */
+static parian_result run_rounds(const parian_env *env, const parian_closest *source,
+                                const transfer_part *part, parian_remesher *remesher)
+{
+    double edge = edge_for_target(part), length = edge * sqrt(count_excess);
+    for (int round = 0; round < ROUNDS_MAX; round++) {
+        if (parian_cancelled(env)) {
+            return PARIAN_E_INTERRUPTED;
+        }
+        parian_result result = parian_remesher_run(env, remesher, length);
+        if (result == PARIAN_OK) {
+            result = bring_back(env, source, remesher, edge);
+        }
+        if (result != PARIAN_OK) {
+            return result;
+        }
+        uint32_t count = parian_remesher_vertex_count(remesher);
+        parian_log(env, PARIAN_LOG_DEBUG, "transfer mesh: round %d, edge %g m, %u vertices of %u",
+                   round, length, count, part->target);
+        if (round + 1 >= ROUNDS_MIN && is_met(count, part->target)) {
+            break;
+        }
+        double ratio = (double)count / part->target;
+        length *= pow(ratio, ratio > 1.0 ? exponent_down : exponent_up);
+    }
+    return PARIAN_OK;
+}
+
+static parian_result finish(const parian_env *env, const parian_closest *source,
+                            parian_remesher *remesher, transfer_part *part)
+{
+    double reach = edge_for_target(part);
+    bool *on_feature = NULL;
+    parian_result result = parian_remesher_repair(env, remesher);
+    if (result == PARIAN_OK) {
+        result = parian_remesher_copy(env, remesher, &part->result, &on_feature);
+    }
+    if (result == PARIAN_OK) {
+        result = parian_transfer_project(env, source, on_feature, reach, &part->result);
+    }
+    if (result == PARIAN_OK) {
+        result = parian_transfer_fit(env, source, on_feature, reach, &part->result);
+    }
+    parian_free(env, on_feature);
+    return result;
+}
+
+parian_result parian_transfer_remesh(const parian_env *env, const parian_closest *source,
+                                     transfer_part *part)
+{
+    double edge = edge_for_target(part);
+    parian_remesher_desc desc = {crease_deg, 0.5 * edge * edge, feature_edges * edge};
+    parian_remesher *remesher = NULL;
+    parian_result result = parian_remesher_create(env, &part->source, &desc, &remesher);
+    if (result == PARIAN_OK) {
+        result = run_rounds(env, source, part, remesher);
+    }
+    if (result == PARIAN_OK) {
+        result = finish(env, source, remesher, part);
+    }
+    parian_remesher_destroy(remesher);
+    return result;
+}
