@@ -1,0 +1,65 @@
+/* implicit.h - solids as scalar fields: negative inside, about the distance to the surface near it.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef PARIAN_ASSETS_IMPLICIT_H
+#define PARIAN_ASSETS_IMPLICIT_H
+
+typedef struct vec3 {
+    double x, y, z;
+} vec3;
+
+/* A field grows by at most about 1 per unit of length, so that |value| bounds the distance from
+ * below. */
+typedef double (*field_function)(vec3 p);
+
+/* A right-handed local frame; y is the second axis. */
+typedef struct frame {
+    vec3 origin, x, y, z;
+} frame;
+
+vec3 v3(double x, double y, double z);
+vec3 v3_add(vec3 a, vec3 b);
+vec3 v3_sub(vec3 a, vec3 b);
+vec3 v3_scale(vec3 a, double s);
+vec3 v3_lerp(vec3 a, vec3 b, double t);
+vec3 v3_cross(vec3 a, vec3 b);
+vec3 v3_normalize(vec3 a);
+double v3_dot(vec3 a, vec3 b);
+double v3_length(vec3 a);
+/* p with x made positive: solids that are alike left and right. */
+vec3 v3_mirror(vec3 p);
+
+/* The frame at origin whose z is `z` and whose y is as near to `up` as can be. */
+frame frame_make(vec3 origin, vec3 z, vec3 up);
+vec3 frame_local(const frame *f, vec3 p);
+
+double clamp01(double t);
+/* 0 below a, 1 above b, smooth between; also for a > b. */
+double smoothstep(double a, double b, double t);
+
+double solid_sphere(vec3 p, vec3 center, double radius);
+/* Axis-aligned; near the surface within a few per cent of the distance for mild aspect ratios. */
+double solid_ellipsoid(vec3 p, vec3 center, vec3 radii);
+/* The hull of two spheres. */
+double solid_cone(vec3 p, vec3 a, vec3 b, double radius_a, double radius_b);
+/* A torus about y. */
+double solid_torus(vec3 p, vec3 center, double ring_radius, double radius);
+/* A plate of half thickness h and rounded rim over an outline of signed distance `outline`;
+ * `across` is the height over the plate's middle. */
+double solid_plate(double outline, double across, double h);
+
+/* Union, intersection and difference that blend over a width of about k. */
+double solid_join(double a, double b, double k);
+double solid_meet(double a, double b, double k);
+double solid_cut(double a, double b, double k);
+
+/* A chain of spheres along the Catmull-Rom curve through `count` points with radii `radius`.
+ * Returns the field; *along (may be NULL) is the curve parameter of the nearest part, 0 at the
+ * first point and count - 1 at the last. */
+double solid_tube(vec3 p, const vec3 *point, const double *radius, int count, double *along);
+
+/* Smooth noise in about [-1, 1], features of size 1; the same everywhere. */
+double noise3(vec3 p);
+
+#endif
