@@ -94,7 +94,7 @@ parian_result parian_transport_model_make(const parian_env *env, const parian_bo
 {
     double z_max, reach = 1.01 * body_diagonal(body);
     memset(model, 0, sizeof *model);
-    model->share = body->split_radius_m > 0 ? share : PARIAN_MODEL_FULL;
+    model->share = body->local_form == PARIAN_LOCAL_SPLIT ? share : PARIAN_MODEL_FULL;
     model->split_radius = body->split_radius_m;
     model->flux = body->bssrdf == PARIAN_BSSRDF_DIPOLE_FLUX;
     make_dipoles(body, model, &z_max);

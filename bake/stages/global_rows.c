@@ -1,0 +1,400 @@
+/* global_rows.c - one row of throughput factors: computed, chosen from, coded.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#include "bake/stages/global_rows.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/clones.h"
+#include "core/half.h"
+#include "core/lanes.h"
+#include "core/memory.h"
+
+enum { GAP_MAX = 4, SCALED_EXPONENT = 13, BISECTIONS = 14 };
+/* Squared distances over 8 (bias_v + bias_u), which is the squared edge of an equilateral mesh. */
+static const float PREFILTER_FROM = 1.5f, PREFILTER_FULL = 2.4f, PREFILTER_TO = 144;
+
+parian_result parian_row_maker_make(const parian_env *env, const parian_global_desc *desc,
+                                    const parian_body *body, parian_row_maker *maker)
+{
+    bool split = body->local_form == PARIAN_LOCAL_SPLIT;
+    bool diagonal = split || body->local_form == PARIAN_LOCAL_NONE;
+    memset(maker, 0, sizeof *maker);
+    maker->body = body;
+    maker->prefilter = !body->paper_form;
+    maker->threshold = desc && desc->threshold != 0 ? desc->threshold : 0.002;
+    maker->threshold_absolute = desc ? desc->threshold_absolute : 0;
+    if (body->paper_form && maker->threshold_absolute <= 0) {
+        maker->threshold_absolute = 1e-5;
+    }
+    parian_result result = parian_transport_model_make(
+        env, body, split ? PARIAN_MODEL_FAR : PARIAN_MODEL_FULL, &maker->model);
+    if (result == PARIAN_OK) {
+        result = parian_vertex_frame_make(env, body, &maker->frame);
+    }
+    if (result == PARIAN_OK && diagonal && !body->paper_form) {
+        if (!PARIAN_NEW(env, maker->total, body->vertex_count)) {
+            return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u row sums",
+                               body->vertex_count);
+        }
+        result = parian_vertex_totals(env, body, &maker->model, &maker->frame, false, maker->total);
+    }
+    return result;
+}
+
+void parian_row_maker_free(const parian_env *env, parian_row_maker *maker)
+{
+    parian_transport_model_free(env, &maker->model);
+    parian_vertex_frame_free(env, &maker->frame);
+    parian_free(env, maker->total);
+    memset(maker, 0, sizeof *maker);
+}
+
+parian_result parian_row_work_make(const parian_env *env, const parian_row_maker *maker,
+                                   parian_row_work *work)
+{
+    size_t padded = maker->frame.points.padded;
+    parian_result result = parian_row_make(env, &maker->frame, &work->row);
+    if (result != PARIAN_OK) {
+        return result;
+    }
+    if (!PARIAN_NEW(env, work->base, padded * 3) || !PARIAN_NEW(env, work->keep, padded) ||
+        !PARIAN_NEW(env, work->coded, PARIAN_RUN_MAX)) {
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for a row of %zu factors", padded);
+    }
+    for (int c = 0; c < 3; c++) {
+        work->weighted[c] = work->base + (size_t)c * padded;
+    }
+    return PARIAN_OK;
+}
+
+void parian_row_work_free(const parian_env *env, parian_row_work *work)
+{
+    parian_row_free(env, &work->row);
+    parian_free(env, work->base);
+    parian_free(env, work->keep);
+    parian_free(env, work->coded);
+    memset(work, 0, sizeof *work);
+}
+
+void parian_run_list_free(const parian_env *env, parian_run_list *list)
+{
+    parian_free(env, list->run);
+    memset(list, 0, sizeof *list);
+}
+
+/* Linear interpolation at both ends widens R_d by kappa times its Laplacian. The factor takes that
+ * off beforehand, as R / (1 + kappa L / R), which never changes sign; nothing in the first ring,
+ * where R_d and hats have nothing in common and the blend takes over. */
+static float prefilter_factor(float value, float laplacian, float kappa, float strength)
+{
+    if (!(value > 0)) {
+        return 1;
+    }
+    float ratio = strength * kappa * laplacian / value;
+    return ratio > 0 ? 1 / (1 + ratio) : fminf(1 - ratio, 2.0f);
+}
+
+static void prefilter_one(const parian_row_maker *maker, uint32_t v, uint32_t u,
+                          const parian_row *row)
+{
+    float kappa = maker->frame.bias[v] + maker->frame.bias[u], plain[3], laplacian[3];
+    float t = row->r2[u] / (8 * kappa);
+    if (!(t > PREFILTER_FROM && t < PREFILTER_TO)) {
+        return;
+    }
+    float ramp = (t - PREFILTER_FROM) / (PREFILTER_FULL - PREFILTER_FROM);
+    float strength = ramp < 1 ? ramp * ramp * (3 - 2 * ramp) : 1;
+    parian_radial_eval(&maker->model.value, row->r2[u], plain);
+    parian_radial_eval(&maker->model.laplacian, row->r2[u], laplacian);
+    for (int c = 0; c < 3; c++) {
+        row->value[c][u] *= prefilter_factor(plain[c], laplacian[c], kappa, strength);
+    }
+}
+
+/* Least of sixteen, to pass over what is far. */
+static float least_of_16(const float *r2)
+{
+    float least = r2[0];
+    for (int k = 1; k < 16; k++) {
+        least = r2[k] < least ? r2[k] : least;
+    }
+    return least;
+}
+
+static void prefilter_row(const parian_row_maker *maker, uint32_t v, const parian_row *row)
+{
+    const parian_point_arrays *points = &maker->frame.points;
+    float reach2 = PREFILTER_TO * 16 * maker->frame.bias[v];
+    for (uint32_t u = 0; u < points->padded; u += 16) {
+        if (least_of_16(row->r2 + u) > reach2) {
+            continue;
+        }
+        for (uint32_t k = u; k < u + 16 && k < points->count; k++) {
+            prefilter_one(maker, v, k, row);
+        }
+    }
+}
+
+void parian_row_compute(const parian_row_maker *maker, uint32_t v, parian_row_work *work)
+{
+    const parian_point_arrays *points = &maker->frame.points;
+    const parian_row *row = &work->row;
+    parian_transport_model_row(&maker->model, maker->body->vertex_position[v],
+                               maker->frame.normal[v], false, points, row->r2, row->value);
+    if (maker->prefilter) {
+        prefilter_row(maker, v, row);
+    }
+    for (int c = 0; c < 3; c++) {
+        for (uint32_t u = points->count; u < points->padded; u++) {
+            row->value[c][u] = 0;
+        }
+        row->value[c][v] = 0;
+        float area = maker->frame.area[v];
+        if (maker->total && area > 0) {
+            double rest = maker->total[v][c] -
+                          parian_row_dot(maker->frame.area, row->value[c], points->padded);
+            row->value[c][v] = (float)fmax(0, rest / area);
+        }
+    }
+}
+
+PARIAN_CLONES
+static float weigh_row(const float *value, const float *area, uint32_t padded, float *weighted)
+{
+    parian_lanes v, a, most = {0};
+    for (uint32_t i = 0; i < padded; i += 16) {
+        PARIAN_LANES_LOAD(v, value + i);
+        PARIAN_LANES_LOAD(a, area + i);
+        v *= a;
+        memcpy(weighted + i, &v, sizeof v);
+        parian_lane_mask more = v > most;
+        most = (parian_lanes)(((parian_lane_mask)v & more) | ((parian_lane_mask)most & ~more));
+    }
+    float all = 0;
+    for (int k = 0; k < 16; k++) {
+        all = most[k] > all ? most[k] : all;
+    }
+    return all;
+}
+
+/* Sum of the entries below a bound. */
+PARIAN_CLONES
+static float sum_below(const float *weighted, uint32_t padded, float bound)
+{
+    parian_lanes w, lane = {0};
+    float sum = 0;
+    for (uint32_t i = 0; i < padded; i += 16) {
+        PARIAN_LANES_LOAD(w, weighted + i);
+        lane += PARIAN_LANES_WHERE(w < bound, w);
+    }
+    for (int k = 0; k < 16; k++) {
+        sum += lane[k];
+    }
+    return sum;
+}
+
+/* The largest bound (found by bisecting the bits of floats) such that what lies below it sums to at
+ * most `allowed`. */
+static float find_bound(const float *weighted, uint32_t padded, float most, float allowed)
+{
+    uint32_t low = 0, high;
+    memcpy(&high, &most, sizeof high);
+    low = high > (24u << 23) ? high - (24u << 23) : 0;
+    for (int step = 0; step < BISECTIONS; step++) {
+        uint32_t middle = low + (high - low) / 2;
+        float bound;
+        memcpy(&bound, &middle, sizeof bound);
+        if (sum_below(weighted, padded, bound) <= allowed) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    float found;
+    memcpy(&found, &low, sizeof found);
+    return found;
+}
+
+PARIAN_CLONES
+static void mark_kept(float *const weighted[3], const float bound[3], uint32_t padded,
+                      uint8_t *keep)
+{
+    const float *restrict r = weighted[0], *restrict g = weighted[1], *restrict b = weighted[2];
+    float br = bound[0], bg = bound[1], bb = bound[2];
+    for (uint32_t i = 0; i < padded; i++) {
+        int any = (r[i] >= br && r[i] > 0) | (g[i] >= bg && g[i] > 0) | (b[i] >= bb && b[i] > 0);
+        keep[i] = (uint8_t)any;
+    }
+}
+
+/* Join runs that are at most GAP_MAX columns apart: four factors cost less than another run. */
+static void fill_gaps(uint8_t *keep, uint32_t count)
+{
+    uint32_t gap_begin = UINT32_MAX;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!keep[i]) {
+            continue;
+        }
+        if (gap_begin < i && i - gap_begin <= GAP_MAX) {
+            memset(keep + gap_begin, 1, i - gap_begin);
+        }
+        gap_begin = i + 1;
+    }
+}
+
+PARIAN_CLONES
+static float sum_unkept(const float *weighted, const uint8_t *keep, uint32_t padded)
+{
+    parian_lanes w, lane = {0};
+    parian_lane_bytes bytes;
+    float sum = 0;
+    for (uint32_t i = 0; i < padded; i += 16) {
+        PARIAN_LANES_LOAD(w, weighted + i);
+        memcpy(&bytes, keep + i, sizeof bytes);
+        parian_lane_mask kept = __builtin_convertvector(bytes, parian_lane_mask);
+        lane += PARIAN_LANES_WHERE(kept == 0, w);
+    }
+    for (int k = 0; k < 16; k++) {
+        sum += lane[k];
+    }
+    return sum;
+}
+
+PARIAN_CLONES
+static float largest(const float *value, uint32_t padded)
+{
+    parian_lanes v, most = {0};
+    for (uint32_t i = 0; i < padded; i += 16) {
+        PARIAN_LANES_LOAD(v, value + i);
+        parian_lane_mask more = v > most;
+        most = (parian_lanes)(((parian_lane_mask)v & more) | ((parian_lane_mask)most & ~more));
+    }
+    float all = 0;
+    for (int k = 0; k < 16; k++) {
+        all = most[k] > all ? most[k] : all;
+    }
+    return all;
+}
+
+/* Power of two that brings the largest factor into [2^13, 2^14). */
+static float choose_scale(float most)
+{
+    int exponent;
+    if (!(most > 0)) {
+        return 1;
+    }
+    frexpf(most, &exponent);
+    exponent -= SCALED_EXPONENT + 1;
+    return ldexpf(1, exponent < -120 ? -120 : exponent > 120 ? 120 : exponent);
+}
+
+void parian_row_choose(const parian_row_maker *maker, parian_row_work *work,
+                       parian_row_choice *choice)
+{
+    uint32_t padded = maker->frame.points.padded, count = maker->frame.points.count;
+    float bound[3];
+    for (int c = 0; c < 3; c++) {
+        float most = weigh_row(work->row.value[c], maker->frame.area, padded, work->weighted[c]);
+        double sum = parian_row_dot(maker->frame.area, work->row.value[c], padded);
+        if (maker->threshold_absolute > 0) {
+            bound[c] = (float)maker->threshold_absolute;
+        } else if (maker->threshold > 0 && most > 0) {
+            bound[c] = find_bound(work->weighted[c], padded, most, (float)(maker->threshold * sum));
+        } else {
+            bound[c] = 0;
+        }
+        choice->sum[c] = sum;
+        choice->scale[c] = choose_scale(largest(work->row.value[c], padded));
+    }
+    mark_kept(work->weighted, bound, padded, work->keep);
+    fill_gaps(work->keep, count);
+    for (int c = 0; c < 3; c++) {
+        double lost = sum_unkept(work->weighted[c], work->keep, padded);
+        choice->lost[c] = choice->sum[c] > 0 ? lost / choice->sum[c] : 0;
+        choice->sum[c] -= lost;
+    }
+}
+
+static parian_result append_run(const parian_env *env, parian_run_list *list, uint32_t column,
+                                uint32_t count)
+{
+    if (list->count == list->capacity) {
+        uint32_t capacity = list->capacity ? list->capacity * 2 : 1024;
+        parian_run *run;
+        if (!PARIAN_NEW(env, run, capacity)) {
+            return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u runs of factors", capacity);
+        }
+        if (list->count) {
+            memcpy(run, list->run, list->count * sizeof *run);
+        }
+        parian_free(env, list->run);
+        list->run = run;
+        list->capacity = capacity;
+    }
+    list->run[list->count].column = column;
+    list->run[list->count++].count = count;
+    return PARIAN_OK;
+}
+
+parian_result parian_row_append_runs(const parian_env *env, const parian_row_maker *maker,
+                                     const parian_row_work *work, parian_run_list *list,
+                                     uint64_t *factors)
+{
+    uint32_t count = maker->frame.points.count;
+    const uint8_t *keep = work->keep;
+    for (uint32_t i = 0; i < count;) {
+        const uint8_t *next = memchr(keep + i, 1, count - i);
+        if (!next) {
+            break;
+        }
+        uint32_t begin = (uint32_t)(next - keep);
+        next = memchr(next, 0, count - begin);
+        i = next ? (uint32_t)(next - keep) : count;
+        for (uint32_t at = begin; at < i; at += PARIAN_RUN_MAX) {
+            uint32_t length = i - at < PARIAN_RUN_MAX ? i - at : PARIAN_RUN_MAX;
+            parian_result result = append_run(env, list, at, length);
+            if (result != PARIAN_OK) {
+                return result;
+            }
+        }
+        *factors += i - begin;
+    }
+    return PARIAN_OK;
+}
+
+/* What would be a subnormal half is 2^-28 of the row's largest factor: zero. */
+static float scale_factor(float value, float inverse)
+{
+    float scaled = value * inverse;
+    return scaled < PARIAN_HALF_MIN_NORMAL ? 0.0f : scaled;
+}
+
+PARIAN_CLONES
+static void interleave(const float *restrict r, const float *restrict g, const float *restrict b,
+                       const float inverse[3], uint32_t count, float (*restrict out)[3])
+{
+    float ir = inverse[0], ig = inverse[1], ib = inverse[2];
+    for (uint32_t i = 0; i < count; i++) {
+        out[i][0] = scale_factor(r[i], ir);
+        out[i][1] = scale_factor(g[i], ig);
+        out[i][2] = scale_factor(b[i], ib);
+    }
+}
+
+void parian_row_code(parian_row_work *work, parian_operator *op, uint32_t v)
+{
+    float inverse[3];
+    for (int c = 0; c < 3; c++) {
+        inverse[c] = 1 / op->scale[v][c];
+    }
+    for (uint32_t r = op->run_offset[v]; r < op->run_offset[v + 1]; r++) {
+        uint32_t column = op->run_column[r], count = op->run_count[r];
+        interleave(work->row.value[0] + column, work->row.value[1] + column,
+                   work->row.value[2] + column, inverse, count, work->coded);
+        parian_half_from_float_array(work->coded[0], op->factor[op->run_factor[r]],
+                                     3 * (size_t)count);
+    }
+}

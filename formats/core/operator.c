@@ -1,0 +1,134 @@
+/* operator.c - application of sparse operators: an interleaved product of two streams.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "core/operator.h"
+
+#include <string.h>
+
+#include "core/clones.h"
+#include "core/half.h"
+#include "core/memory.h"
+
+/* Eight columns of three channels at a time: three vectors of eight floats. */
+enum { ROWS_PER_BLOCK = 64, LANES = 24, COLUMN_SUM_BLOCKS = 16 };
+
+/* A finite half as a float: shift exponent and mantissa to their places, then mend the bias by an
+ * exact product. The arithmetic shift leaves the sign in place. */
+static inline float decode(parian_half half)
+{
+    int32_t bits = (int32_t)((uint32_t)(int32_t)(int16_t)half << 13 & 0x8fffffffu);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value * 0x1p112f;
+}
+
+PARIAN_CLONES
+static void row_product(const parian_operator *op, uint32_t row, const float (*x)[3], float out[3])
+{
+    float lane[LANES] = {0};
+    for (uint32_t r = op->run_offset[row]; r < op->run_offset[row + 1]; r++) {
+        const parian_half *restrict f = op->factor[op->run_factor[r]];
+        const float *restrict v = x[op->run_column[r]];
+        uint32_t count = 3 * (uint32_t)op->run_count[r], i = 0;
+        for (; i + LANES <= count; i += LANES) {
+            for (int k = 0; k < LANES; k++) {
+                lane[k] += decode(f[i + k]) * v[i + k];
+            }
+        }
+        for (uint32_t k = 0; i + k < count; k++) {
+            lane[k] += decode(f[i + k]) * v[i + k];
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        float sum = 0;
+        for (int k = c; k < LANES; k += 3) {
+            sum += lane[k];
+        }
+        out[c] = sum * op->scale[row][c];
+    }
+}
+
+typedef struct apply_job {
+    const parian_operator *op;
+    const float (*x)[3];
+    float (*y)[3];
+    bool accumulate;
+} apply_job;
+
+static void apply_block(void *context, size_t block)
+{
+    const apply_job *job = context;
+    uint32_t first = (uint32_t)block * ROWS_PER_BLOCK, last = first + ROWS_PER_BLOCK;
+    last = last < job->op->row_count ? last : job->op->row_count;
+    for (uint32_t row = first; row < last; row++) {
+        float out[3];
+        row_product(job->op, row, job->x, out);
+        for (int c = 0; c < 3; c++) {
+            job->y[row][c] = job->accumulate ? job->y[row][c] + out[c] : out[c];
+        }
+    }
+}
+
+void parian_operator_apply(const parian_env *env, const parian_operator *op, const float (*x)[3],
+                           float (*y)[3], bool accumulate)
+{
+    apply_job job = {.op = op, .x = x, .y = y, .accumulate = accumulate};
+    parian_par(env, (op->row_count + ROWS_PER_BLOCK - 1) / ROWS_PER_BLOCK, apply_block, &job);
+}
+
+typedef struct column_job {
+    const parian_operator *op;
+    const float *weight;
+    double (*partial)[3]; /* [COLUMN_SUM_BLOCKS][column_count] */
+} column_job;
+
+PARIAN_CLONES
+static void add_run(const parian_half *restrict factor, uint32_t count, const float gain[3],
+                    double *restrict sum)
+{
+    double r = gain[0], g = gain[1], b = gain[2];
+    for (uint32_t i = 0; i < count; i++) {
+        sum[3 * i] += r * (double)decode(factor[3 * i]);
+        sum[3 * i + 1] += g * (double)decode(factor[3 * i + 1]);
+        sum[3 * i + 2] += b * (double)decode(factor[3 * i + 2]);
+    }
+}
+
+static void column_block(void *context, size_t block)
+{
+    const column_job *job = context;
+    const parian_operator *op = job->op;
+    double(*partial)[3] = job->partial + block * op->column_count;
+    uint32_t first = (uint32_t)((uint64_t)op->row_count * block / COLUMN_SUM_BLOCKS);
+    uint32_t last = (uint32_t)((uint64_t)op->row_count * (block + 1) / COLUMN_SUM_BLOCKS);
+    for (uint32_t row = first; row < last; row++) {
+        float gain[3];
+        for (int c = 0; c < 3; c++) {
+            gain[c] = job->weight[row] * op->scale[row][c];
+        }
+        for (uint32_t r = op->run_offset[row]; r < op->run_offset[row + 1]; r++) {
+            add_run(op->factor[op->run_factor[r]], op->run_count[r], gain,
+                    partial[op->run_column[r]]);
+        }
+    }
+}
+
+parian_result parian_operator_column_sums(const parian_env *env, const parian_operator *op,
+                                          const float *weight, double (*sum)[3])
+{
+    column_job job = {.op = op, .weight = weight};
+    if (!PARIAN_NEW0(env, job.partial, (size_t)op->column_count * COLUMN_SUM_BLOCKS)) {
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u column sums", op->column_count);
+    }
+    parian_par(env, COLUMN_SUM_BLOCKS, column_block, &job);
+    for (size_t i = 0; i < (size_t)op->column_count * 3; i++) {
+        double all = 0;
+        for (size_t b = 0; b < COLUMN_SUM_BLOCKS; b++) {
+            all += job.partial[b * op->column_count + i / 3][i % 3];
+        }
+        sum[i / 3][i % 3] = all;
+    }
+    parian_free(env, job.partial);
+    return PARIAN_OK;
+}
