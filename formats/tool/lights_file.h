@@ -21,6 +21,10 @@ typedef struct parian_light_set {
 enum { PARIAN_LIGHTS_MAX = 1024 };
 
 void parian_light_set_free(const parian_env *env, parian_light_set *set);
+/* Append a copy of a light; its picture, which parian_free must be able to free, goes to the set
+ * (and is freed on failure). Errors: PARIAN_E_LIMIT, PARIAN_E_NOMEM. */
+parian_result parian_light_set_append(const parian_env *env, parian_light_set *set,
+                                      const parian_light *light);
 
 /* Each of these appends to the set, or leaves it as it was. One number holds for all three
  * channels; a spot's outer_deg is 30 and its inner_deg two thirds of that unless given; an

@@ -22,9 +22,6 @@ typedef struct parian_light_source_text {
 parian_result parian_light_from_object(const parian_light_source_text *text, const cJSON *object,
                                        parian_light *light);
 
-/* Append a light; on failure its picture is freed. */
-parian_result parian_light_set_append(const parian_env *env, parian_light_set *set,
-                                      const parian_light *light);
 /* Free the lights from `count` on. */
 void parian_light_set_cut(const parian_env *env, parian_light_set *set, size_t count);
 

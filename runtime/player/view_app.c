@@ -1,0 +1,90 @@
+/* view_app.c - what the window and the headless run share: asset, lights, camera, renderer.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "view_app.h"
+
+#include <string.h>
+
+parian_result parian_view_app_open(parian_view_app *app)
+{
+    const parian_view_options *o = app->options;
+    const double aspect = (double)o->width / o->height;
+    parian_result result = parian_view_camera_check(app->env, o->camera);
+    if (result == PARIAN_OK) {
+        result = parian_view_lights_read(app->env, o, &app->lights);
+    }
+    if (result == PARIAN_OK) {
+        result = parian_scene_open(app->env, o->asset, &app->scene);
+    }
+    if (result != PARIAN_OK) {
+        return result;
+    }
+    app->info = parian_scene_get_info(app->scene);
+    app->extent = parian_view_extent_of(&app->info);
+    if (app->lights.count == 0) {
+        result = parian_view_lights_default(app->env, &app->info, &app->extent, &app->lights);
+    }
+    if (result == PARIAN_OK) {
+        result = parian_view_camera_make(app->env, o->camera, &app->extent, aspect, &app->camera);
+    }
+    app->exposure_auto = o->exposure_auto;
+    app->exposure_ev = (float)o->exposure_ev;
+    app->settings = (parian_settings){.view = (parian_view_mode)o->view,
+                                      .no_specular = o->no_specular,
+                                      .roughness = (float)o->roughness};
+    for (int c = 0; c < 3; c++) {
+        app->settings.background[c] = (float)o->background[c];
+    }
+    return result;
+}
+
+parian_result parian_view_app_start(parian_view_app *app,
+                                    void *(*get_proc_address)(const char *name))
+{
+    const parian_renderer_desc desc = {.backend = get_proc_address ? PARIAN_BACKEND_GL
+                                                                   : PARIAN_BACKEND_CPU,
+                                       .get_proc_address = get_proc_address};
+    parian_result result = parian_renderer_create(app->env, app->scene, &desc, &app->renderer);
+    if (result == PARIAN_OK) {
+        result = parian_renderer_set_settings(app->renderer, &app->settings);
+    }
+    if (result == PARIAN_OK) {
+        result = parian_renderer_set_lights(app->renderer, app->lights.light, app->lights.count);
+    }
+    return result;
+}
+
+void parian_view_app_stop(parian_view_app *app)
+{
+    parian_renderer_destroy(app->renderer);
+    app->renderer = NULL;
+}
+
+void parian_view_app_close(parian_view_app *app)
+{
+    parian_light_set_free(app->env, &app->lights);
+    parian_scene_close(app->scene);
+    app->scene = NULL;
+}
+
+parian_result parian_view_app_draw(parian_view_app *app, uint32_t width, uint32_t height,
+                                   uint32_t framebuffer)
+{
+    const double aspect = (double)width / height;
+    const parian_draw_desc desc = {
+        .camera = parian_view_camera_matrices(&app->camera, &app->extent, aspect),
+        .width = width,
+        .height = height,
+        .exposure_auto = app->exposure_auto,
+        .exposure_ev = app->exposure_ev,
+        .framebuffer = framebuffer};
+    return parian_renderer_draw(app->renderer, &desc);
+}
+
+parian_result parian_view_app_relight(parian_view_app *app)
+{
+    parian_result result =
+        parian_renderer_set_lights(app->renderer, app->lights.light, app->lights.count);
+    return result == PARIAN_OK ? parian_renderer_relight(app->renderer) : result;
+}

@@ -1,0 +1,81 @@
+/* view_lights.c - the lights that the player begins with, and how the mouse moves them.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "view_lights.h"
+
+#include "view_vector.h"
+
+static const double KEY_IRRADIANCE = 3, BACK_IRRADIANCE = 2; /* W/m^2 at the centre of the bodies */
+static const double LIGHT_DISTANCE = 2.5;                    /* bounding radii */
+
+parian_result parian_view_lights_read(const parian_env *env, const parian_view_options *options,
+                                      parian_light_set *set)
+{
+    parian_result result = PARIAN_OK;
+    if (options->lights_file) {
+        result = parian_lights_read_file(env, options->lights_file, set);
+    }
+    for (size_t i = 0; i < options->lights.count && result == PARIAN_OK; i++) {
+        result = parian_lights_parse_spec(env, options->lights.item[i], set);
+    }
+    return result;
+}
+
+static parian_light point_light(const parian_view_extent *extent, double x, double y, double z,
+                                double irradiance)
+{
+    parian_light light = {.type = PARIAN_LIGHT_POINT};
+    double direction[3] = {x, y, z};
+    const double distance = LIGHT_DISTANCE * extent->body_radius;
+    vector_normalize(direction);
+    for (int c = 0; c < 3; c++) {
+        light.position[c] = (float)(extent->body_centre[c] + distance * direction[c]);
+        light.color[c] = (float)(irradiance * distance * distance);
+    }
+    return light;
+}
+
+parian_result parian_view_lights_default(const parian_env *env, const parian_scene_info *info,
+                                         const parian_view_extent *extent, parian_light_set *set)
+{
+    if (info->lights_json) {
+        parian_result result = parian_lights_parse(env, info->lights_json, NULL, set);
+        if (result != PARIAN_OK || set->count > 0) {
+            return result;
+        }
+    }
+    const parian_light lights[] = {point_light(extent, -0.6, 0.7, 0.75, KEY_IRRADIANCE),
+                                   point_light(extent, 0.5, 0.45, -0.85, BACK_IRRADIANCE)};
+    parian_result result = PARIAN_OK;
+    for (size_t i = 0; i < sizeof lights / sizeof lights[0] && result == PARIAN_OK; i++) {
+        result = parian_light_set_append(env, set, &lights[i]);
+    }
+    return result;
+}
+
+static void turn_vector(float v[3], const double axis[3], double angle)
+{
+    double turned[3] = {v[0], v[1], v[2]};
+    vector_rotate(axis, angle, turned);
+    for (int c = 0; c < 3; c++) {
+        v[c] = (float)turned[c];
+    }
+}
+
+void parian_view_light_turn(parian_light *light, const double centre[3], const double axis[3],
+                            double angle)
+{
+    for (int c = 0; c < 3; c++) {
+        light->position[c] -= (float)centre[c];
+    }
+    turn_vector(light->position, axis, angle);
+    for (int c = 0; c < 3; c++) {
+        light->position[c] += (float)centre[c];
+    }
+    turn_vector(light->direction, axis, angle);
+    turn_vector(light->up, axis, angle);
+    turn_vector(light->axis_u, axis, angle);
+    turn_vector(light->axis_v, axis, angle);
+    light->rotation_deg += (float)(angle * 180 / 3.14159265358979323846 * axis[1]);
+}

@@ -1,0 +1,24 @@
+/* view_lights.h - the lights that the player begins with, and how the mouse moves them.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef PARIAN_VIEW_LIGHTS_H
+#define PARIAN_VIEW_LIGHTS_H
+
+#include "tool/lights_file.h"
+#include "view_camera.h"
+#include "view_options.h"
+
+/* Lights of --lights and --light. Errors: those of lights_file.h. */
+parian_result parian_view_lights_read(const parian_env *env, const parian_view_options *options,
+                                      parian_light_set *set);
+/* Fill an empty set: with the asset's lights, else a key light in front, to the left and above,
+ * with an irradiance of 3 W/m^2 at the bodies, and a weaker one behind them. */
+parian_result parian_view_lights_default(const parian_env *env, const parian_scene_info *info,
+                                         const parian_view_extent *extent, parian_light_set *set);
+
+/* Turn a light about a point by a rotation of the world: unit axis, radians. */
+void parian_view_light_turn(parian_light *light, const double centre[3], const double axis[3],
+                            double angle);
+
+#endif
