@@ -113,11 +113,6 @@ static parian_result check_forms(const parian_env *env, const parian_body *body,
         return fail_setting(env, where, RULE_KERNEL_WIDTH, "a kernel's width is odd, 3 to 15",
                             width);
     }
-    if (body->local_form == PARIAN_LOCAL_SPLIT &&
-        !(body->split_radius_m > 0 && body->split_radius_m <= POSITION_MAX_M)) {
-        return fail_setting(env, where, RULE_SPLIT_RADIUS, "the split radius is above zero",
-                            body->split_radius_m);
-    }
     return PARIAN_OK;
 }
 
@@ -424,6 +419,11 @@ static parian_result check_local(const check *c)
     size_t taps =
         (size_t)(body->texel_count - body->border_count) * body->kernel_width * body->kernel_width;
     size_t bad = PARIAN_ALL_GOOD;
+    if (body->local_form == PARIAN_LOCAL_SPLIT &&
+        !(body->split_radius_m > 0 && body->split_radius_m <= POSITION_MAX_M)) {
+        return fail_setting(c->env, c->where, RULE_SPLIT_RADIUS, "local.split_radius is above zero",
+                            body->split_radius_m);
+    }
     if (body->blend_weight) {
         bad = parian_find_infinite_half(c->env, body->blend_weight, (size_t)body->texel_count * 9);
         if (bad != PARIAN_ALL_GOOD) {
