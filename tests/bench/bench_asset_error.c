@@ -77,7 +77,7 @@ static parian_result relight(bench *b, const parian_light_set *set)
     return r == PARIAN_OK ? parian_renderer_read_texels(b->renderer, &arrays) : r;
 }
 
-static void print_error(const quadrature_error *e)
+static void print_body_error(const quadrature_error *e)
 {
     printf("  L2 %.4f %.4f %.4f  energy %.4f %.4f %.4f  p99.9 %.3f %.3f %.3f  smallest %.2g",
            e->l2[0], e->l2[1], e->l2[2], e->energy[0], e->energy[1], e->energy[2], e->p999[0],
@@ -115,7 +115,7 @@ static parian_result measure(bench *b, const char *spec)
         quadrature_error e = quadrature_compare(&texels, (const float(*)[3])(b->radiosity + at),
                                                 receiver, RECEIVERS, (const double(*)[3])truth);
         printf("%s, %s, %s:", body->name, body->medium.name, spec);
-        print_error(&e);
+        print_body_error(&e);
         at += body->texel_count;
     }
     print_times(b);
