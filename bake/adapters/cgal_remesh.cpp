@@ -26,13 +26,16 @@ using kernel = CGAL::Simple_cartesian<double>;
 using surface = CGAL::Surface_mesh<kernel::Point_3>;
 using vertex = surface::Vertex_index;
 using edge = surface::Edge_index;
+using halfedge = surface::Halfedge_index;
 using edge_flags = surface::Property_map<edge, bool>;
+using vertex_flags = surface::Property_map<vertex, bool>;
 
 } // namespace
 
 struct parian_remesher {
     surface mesh;
     edge_flags feature;
+    vertex_flags corner; /* where features meet, end or turn */
 };
 
 namespace
@@ -157,6 +160,62 @@ void drop_short_creases(const surface &mesh, double length_min, edge_flags &feat
     }
 }
 
+/* The two features at a vertex, as half-edges that lead away from it; false if there are not just
+ * two. */
+bool find_two_features(const parian_remesher *remesher, vertex v, halfedge away[2])
+{
+    const surface &mesh = remesher->mesh;
+    int count = 0;
+    for (halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
+        if (remesher->feature[mesh.edge(h)] || mesh.is_border(mesh.edge(h))) {
+            if (count < 2) {
+                away[count] = mesh.opposite(h);
+            }
+            count++;
+        }
+    }
+    return count == 2;
+}
+
+/* Where one gets to along a feature after some length, or at its end. */
+kernel::Point_3 follow_feature(const parian_remesher *remesher, halfedge h, double length)
+{
+    const surface &mesh = remesher->mesh;
+    vertex start = mesh.source(h);
+    for (length -= edge_length(mesh, mesh.edge(h)); length > 0.0;
+         length -= edge_length(mesh, mesh.edge(h))) {
+        halfedge away[2];
+        vertex at = mesh.target(h);
+        if (at == start || !find_two_features(remesher, at, away)) {
+            break;
+        }
+        h = mesh.target(away[0]) == mesh.source(h) ? away[1] : away[0];
+    }
+    return mesh.point(mesh.target(h));
+}
+
+bool is_turn(const kernel::Point_3 &a, const kernel::Point_3 &b, const kernel::Point_3 &c)
+{
+    const double turn_cosine = std::sqrt(0.5); /* 45 degrees */
+    kernel::Vector_3 ab = b - a, bc = c - b;
+    return ab * bc < turn_cosine * std::sqrt(ab.squared_length() * bc.squared_length());
+}
+
+/* Features meet or end at a corner, or turn there both from edge to edge and seen from some way
+ * off: the border of a scan is jagged, but does not turn. */
+bool is_corner(const parian_remesher *remesher, vertex v, double length)
+{
+    const surface &mesh = remesher->mesh;
+    halfedge away[2];
+    if (!find_two_features(remesher, v, away)) {
+        return true;
+    }
+    return is_turn(mesh.point(mesh.target(away[0])), mesh.point(v),
+                   mesh.point(mesh.target(away[1]))) &&
+           is_turn(follow_feature(remesher, away[0], length), mesh.point(v),
+                   follow_feature(remesher, away[1], length));
+}
+
 bool touches_feature(const parian_remesher *remesher, vertex v)
 {
     const surface &mesh = remesher->mesh;
@@ -196,6 +255,11 @@ parian_result parian_remesher_create(const parian_env *env, const parian_mesh *m
         pmp::detect_sharp_edges(made->mesh, desc->crease_deg, made->feature);
         drop_noise_creases(made->mesh, desc, made->feature);
         drop_short_creases(made->mesh, desc->feature_length, made->feature);
+        made->corner = made->mesh.add_property_map<vertex, bool>("v:corner", false).first;
+        for (vertex v : made->mesh.vertices()) {
+            made->corner[v] =
+                touches_feature(made.get(), v) && is_corner(made.get(), v, desc->corner_length);
+        }
         *remesher = made.release();
         return PARIAN_OK;
     });
@@ -213,6 +277,7 @@ parian_result parian_remesher_run(const parian_env *env, parian_remesher *remesh
         surface &mesh = remesher->mesh;
         pmp::isotropic_remeshing(mesh.faces(), edge_length, mesh,
                                  pmp::parameters::edge_is_constrained_map(remesher->feature)
+                                     .vertex_is_constrained_map(remesher->corner)
                                      .number_of_iterations(1)
                                      .number_of_relaxation_steps(1)
                                      .do_project(false));
@@ -227,7 +292,8 @@ parian_result parian_remesher_repair(const parian_env *env, parian_remesher *rem
     return parian::guard(env, "CGAL repair of slivers", PARIAN_E_COMPUTE, [&] {
         pmp::experimental::remove_almost_degenerate_faces(
             remesher->mesh, cap_cosine, needle_ratio, 0.0,
-            pmp::parameters::edge_is_constrained_map(remesher->feature));
+            pmp::parameters::edge_is_constrained_map(remesher->feature)
+                .vertex_is_constrained_map(remesher->corner));
         remesher->mesh.collect_garbage();
         return PARIAN_OK;
     });

@@ -21,6 +21,7 @@ typedef struct parian_remesher_desc {
     double crease_deg; /* edges with a larger angle between their faces' normals may be features */
     double feature_area;   /* m^2; creases that enclose less on one side are noise */
     double feature_length; /* metres; connected creases that are shorter in sum are noise */
+    double corner_length;  /* metres; how far features are followed to see whether they turn */
 } parian_remesher_desc;
 
 /* Copy a mesh, an oriented 2-manifold with boundary. Errors: PARIAN_E_COMPUTE where it is not,

@@ -101,7 +101,7 @@ parian_result parian_transfer_remesh(const parian_env *env, const parian_closest
                                      transfer_part *part)
 {
     double edge = edge_for_target(part);
-    parian_remesher_desc desc = {crease_deg, 0.5 * edge * edge, feature_edges * edge};
+    parian_remesher_desc desc = {crease_deg, 0.5 * edge * edge, feature_edges * edge, edge};
     parian_remesher *remesher = NULL;
     parian_result result = parian_remesher_create(env, &part->source, &desc, &remesher);
     if (result == PARIAN_OK) {
