@@ -1,0 +1,326 @@
+/* cpu_lights.c - light that arrives at a point, and shadows: the C evaluation of shaders/lights.glsl.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "cpu/cpu_lights.h"
+
+#include "core/fresnel.h"
+#include "core/memory.h"
+#include "cpu/cpu_raster.h"
+#include "lights/light_image.h"
+#include "vec3.h"
+
+enum { TEXEL_PIECE = 1024 };
+
+/* ---- shadow maps ---- */
+
+typedef struct shadow_target {
+    const parian_shadow_layer *layer;
+    const float (*position)[3];
+    const uint32_t (*triangle)[3];
+    float *depth;
+} shadow_target;
+
+static void shadow_fragment(void *context, uint32_t pixel, uint32_t triangle, const float share[3])
+{
+    const shadow_target *target = context;
+    const float *row = target->layer->row[2];
+    float sum = share[0] + share[1] + share[2], depth = 0.0f;
+    for (int k = 0; k < 3; k++) {
+        const float *p = target->position[target->triangle[triangle][k]];
+        depth += share[k] * (vec3_dot(row, p) + row[3]);
+    }
+    depth /= sum;
+    if (depth >= 0.0f && depth < target->depth[pixel]) {
+        target->depth[pixel] = depth;
+    }
+}
+
+static parian_result draw_caster(const parian_env *env, uint32_t size, const parian_shadow_layer *layer,
+                                 const float (*position)[3], const uint32_t (*triangle)[3], uint32_t count,
+                                 float *depth)
+{
+    shadow_target target = {layer, position, triangle, depth};
+    parian_raster_desc desc = {.width = size,
+                               .height = size,
+                               .triangle_count = count,
+                               .triangle = triangle,
+                               .position = position,
+                               .fragment = shadow_fragment,
+                               .context = &target};
+    for (int k = 0; k < 4; k++) {
+        desc.row_x[k] = layer->row[0][k];
+        desc.row_y[k] = -layer->row[1][k]; /* shadow maps keep row 0 at y = -1, as GL does */
+        desc.row_w[k] = layer->row[3][k];
+    }
+    return parian_raster_run(env, &desc);
+}
+
+static parian_result draw_layer(const parian_env *env, const parian_scene_data *scene, uint32_t size,
+                                const parian_shadow_layer *layer, float *depth)
+{
+    parian_result result = PARIAN_OK;
+    for (size_t i = 0; i < (size_t)size * size; i++) {
+        depth[i] = 1.0f;
+    }
+    for (uint32_t b = 0; result == PARIAN_OK && b < scene->body_count; b++) {
+        const parian_body *body = &scene->bodies[b];
+        result = draw_caster(env, size, layer, (const float(*)[3])body->vertex_position,
+                             (const uint32_t(*)[3])body->triangle, body->triangle_count, depth);
+    }
+    for (uint32_t s = 0; result == PARIAN_OK && s < scene->surrounding_count; s++) {
+        const parian_surrounding *piece = &scene->surroundings[s];
+        result = draw_caster(env, size, layer, (const float(*)[3])piece->vertex_position,
+                             (const uint32_t(*)[3])piece->triangle, piece->triangle_count, depth);
+    }
+    return result;
+}
+
+parian_result parian_cpu_shadow(const parian_env *env, const parian_scene_data *scene, parian_cpu_lights *lights)
+{
+    const parian_light_list *list = lights->list;
+    size_t area = (size_t)list->shadow_size * list->shadow_size;
+    parian_result result = PARIAN_OK;
+    parian_free(env, lights->depth);
+    if (!PARIAN_NEW(env, lights->depth, area * list->layer_count)) {
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u shadow maps of %u texels a side",
+                           list->layer_count, list->shadow_size);
+    }
+    for (uint32_t l = 0; result == PARIAN_OK && l < list->layer_count; l++) {
+        result = draw_layer(env, scene, list->shadow_size, &list->layer[l], lights->depth + l * area);
+    }
+    return result;
+}
+
+static float row_at(const float row[4], const float p[3])
+{
+    return row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3];
+}
+
+/* Light that passes one map; false where the point does not fall on it. */
+static bool look_up_layer(const parian_cpu_lights *lights, uint32_t index, const float p[3], const float n[3],
+                          float *lit)
+{
+    const parian_shadow_layer *layer = &lights->list->layer[index];
+    const float size = (float)lights->list->shadow_size;
+    float w = row_at(layer->row[3], p), q[3];
+    if (w <= 0.0f) {
+        return false;
+    }
+    float texel = layer->texel_scale * w;
+    vec3_copy(q, p);
+    vec3_add_scaled(q, n, 1.5f * texel + lights->lift);
+    w = row_at(layer->row[3], q);
+    if (layer->perspective && w <= layer->near_m) {
+        return false;
+    }
+    float x = (row_at(layer->row[0], q) / w * 0.5f + 0.5f) * size - 0.5f;
+    float y = (row_at(layer->row[1], q) / w * 0.5f + 0.5f) * size - 0.5f;
+    if (!(x >= 0.0f && y >= 0.0f && x < size - 1.0f && y < size - 1.0f)) {
+        return false;
+    }
+    float depth = row_at(layer->row[2], q) - 0.5f * texel / (layer->far_m - layer->near_m);
+    float x0 = floorf(x), y0 = floorf(y), fx = x - x0, fy = y - y0;
+    uint32_t side = lights->list->shadow_size;
+    const float *map = lights->depth + ((size_t)index * side + (uint32_t)y0) * side + (uint32_t)x0;
+    float a = depth <= map[0] ? 1.0f : 0.0f, b = depth <= map[1] ? 1.0f : 0.0f;
+    float c = depth <= map[side] ? 1.0f : 0.0f, d = depth <= map[side + 1] ? 1.0f : 0.0f;
+    *lit = (a * (1.0f - fx) + b * fx) * (1.0f - fy) + (c * (1.0f - fx) + d * fx) * fy;
+    return true;
+}
+
+float parian_cpu_visibility(const parian_cpu_lights *lights, const parian_light_sample *sample,
+                            const float p[3], const float n[3])
+{
+    float lit = 1.0f;
+    for (uint32_t k = 0; k < sample->layer_count; k++) {
+        if (look_up_layer(lights, sample->layer_first + k, p, n, &lit)) {
+            return lit;
+        }
+    }
+    return 1.0f;
+}
+
+/* ---- light at a point ---- */
+
+/* Bilinear look-up in one level, black outside. */
+static void image_level(const parian_light_list *list, const parian_light_sample *sample, uint32_t level,
+                        float s, float t, float rgb[3])
+{
+    uint32_t offset = sample->image_offset;
+    for (uint32_t l = 0; l < level; l++) {
+        offset += parian_image_level_side(sample->image_width, l) *
+                  parian_image_level_side(sample->image_height, l);
+    }
+    int w = (int)parian_image_level_side(sample->image_width, level);
+    int h = (int)parian_image_level_side(sample->image_height, level);
+    float x = s * (float)w - 0.5f, y = t * (float)h - 0.5f;
+    float x0 = floorf(x), y0 = floorf(y);
+    vec3_set(rgb, 0.0f);
+    for (int k = 0; k < 4; k++) {
+        int ix = (int)x0 + (k & 1), iy = (int)y0 + (k >> 1);
+        float weight = (k & 1 ? x - x0 : 1.0f - (x - x0)) * (k >> 1 ? y - y0 : 1.0f - (y - y0));
+        if (ix >= 0 && iy >= 0 && ix < w && iy < h) {
+            vec3_add_scaled(rgb, list->image[offset + (uint32_t)(iy * w + ix)], weight);
+        }
+    }
+}
+
+/* The projected picture at a point, filtered over `extent`. */
+static void image_at(const parian_light_list *list, const parian_light_sample *sample, const float away[3],
+                     float extent, float rgb[3])
+{
+    float z = vec3_dot(away, sample->direction), reach = z * sample->tan_outer;
+    vec3_set(rgb, 0.0f);
+    if (!(reach > 0.0f)) {
+        return;
+    }
+    float s = 0.5f + 0.5f * vec3_dot(away, sample->right) / reach;
+    float t = 0.5f - 0.5f * vec3_dot(away, sample->up) / reach;
+    if (!(s > -1.0f && s < 2.0f && t > -1.0f && t < 2.0f)) {
+        return;
+    }
+    float pixel = 2.0f * reach / (float)sample->image_width, coarse[3];
+    float level = log2f(fmaxf(extent / pixel, 1.0f));
+    level = fminf(level, (float)(sample->image_levels - 1));
+    uint32_t fine = (uint32_t)level;
+    float blend = level - (float)fine;
+    image_level(list, sample, fine, s, t, rgb);
+    if (blend > 0.0f) {
+        image_level(list, sample, fine + 1, s, t, coarse);
+        vec3_scale(rgb, 1.0f - blend);
+        vec3_add_scaled(rgb, coarse, blend);
+    }
+}
+
+void parian_cpu_light_at(const parian_light_list *list, const parian_light_sample *sample, const float p[3],
+                         float extent, float to_light[3], float irradiance[3])
+{
+    vec3_copy(irradiance, sample->color);
+    if (sample->kind == PARIAN_SAMPLE_DIRECTIONAL || sample->kind == PARIAN_SAMPLE_PROBE) {
+        vec3_copy(to_light, sample->direction);
+        vec3_scale(to_light, -1.0f);
+        return;
+    }
+    float away[3];
+    vec3_sub(away, p, sample->position);
+    vec3_copy(to_light, away);
+    vec3_scale(to_light, -1.0f);
+    float distance = vec3_normalize(to_light);
+    float attenuation = 1.0f / fmaxf(distance * distance, extent * extent / (float)M_PI);
+    float cosine = -vec3_dot(to_light, sample->direction);
+    if (sample->kind == PARIAN_SAMPLE_PATCH) {
+        attenuation *= fmaxf(cosine, 0.0f);
+    }
+    if (sample->kind == PARIAN_SAMPLE_SPOT) {
+        float ramp = (cosine - sample->cos_outer) / fmaxf(sample->cos_inner - sample->cos_outer, 1e-6f);
+        ramp = fminf(fmaxf(ramp, 0.0f), 1.0f);
+        attenuation *= ramp * ramp * (3.0f - 2.0f * ramp);
+        if (sample->image_levels > 0 && attenuation > 0.0f) {
+            float rgb[3];
+            image_at(list, sample, away, extent, rgb);
+            for (int c = 0; c < 3; c++) {
+                irradiance[c] *= rgb[c];
+            }
+        }
+    }
+    vec3_scale(irradiance, attenuation);
+}
+
+/* ---- environment ---- */
+
+static void evaluate_sh(const parian_light_list *list, const float direction[3], const float zonal[3],
+                        float value[3])
+{
+    static const int band[PARIAN_SH_COUNT] = {0, 1, 1, 1, 2, 2, 2, 2, 2};
+    float y[PARIAN_SH_COUNT];
+    parian_sh_evaluate(direction, y);
+    vec3_set(value, 0.0f);
+    for (int k = 0; k < PARIAN_SH_COUNT; k++) {
+        vec3_add_scaled(value, list->environment_sh[k], zonal[band[k]] * y[k]);
+    }
+    for (int c = 0; c < 3; c++) {
+        value[c] = fmaxf(value[c], 0.0f);
+    }
+}
+
+void parian_cpu_environment_radiance(const parian_light_list *list, const float direction[3],
+                                     float radiance[3])
+{
+    const float one[3] = {1.0f, 1.0f, 1.0f};
+    evaluate_sh(list, direction, one, radiance);
+}
+
+void parian_cpu_environment(const parian_cpu_lights *lights, const float p[3], const float n[3],
+                            const float zonal[3], float eta, float irradiance[3])
+{
+    const parian_light_list *list = lights->list;
+    float open[3] = {0}, all[3] = {0};
+    evaluate_sh(list, n, zonal, irradiance);
+    for (uint32_t i = 0; i < list->sample_count; i++) {
+        const parian_light_sample *sample = &list->sample[i];
+        float cosine = -vec3_dot(n, sample->direction);
+        if (sample->kind != PARIAN_SAMPLE_PROBE || cosine <= 0.0f) {
+            continue;
+        }
+        float weight = cosine * (eta > 0.0f ? parian_fresnel_transmittancef(cosine, eta) : 1.0f);
+        vec3_add_scaled(all, sample->color, weight);
+        vec3_add_scaled(open, sample->color, weight * parian_cpu_visibility(lights, sample, p, n));
+    }
+    for (int c = 0; c < 3; c++) {
+        irradiance[c] *= all[c] > 0.0f ? open[c] / all[c] : 1.0f;
+    }
+}
+
+/* ---- E ---- */
+
+typedef struct irradiance_job {
+    const parian_cpu_lights *lights;
+    const parian_body *body;
+    float eta;
+    const float *zonal;
+    float (*irradiance)[3];
+} irradiance_job;
+
+static void irradiance_of_texel(const irradiance_job *job, uint32_t t, float sum[3])
+{
+    const parian_light_list *list = job->lights->list;
+    const float *p = job->body->texel_position[t], *n = job->body->texel_normal[t];
+    float extent = sqrtf(job->body->texel_area[t]);
+    vec3_set(sum, 0.0f);
+    for (uint32_t i = 0; i < list->sample_count; i++) {
+        const parian_light_sample *sample = &list->sample[i];
+        float to_light[3], light[3];
+        if (sample->kind == PARIAN_SAMPLE_PROBE) {
+            continue;
+        }
+        parian_cpu_light_at(list, sample, p, extent, to_light, light);
+        float cosine = vec3_dot(n, to_light);
+        if (cosine <= 0.0f || light[0] + light[1] + light[2] <= 0.0f) {
+            continue;
+        }
+        float weight = cosine * parian_fresnel_transmittancef(cosine, job->eta);
+        vec3_add_scaled(sum, light, weight * parian_cpu_visibility(job->lights, sample, p, n));
+    }
+    if (list->has_environment) {
+        float sky[3];
+        parian_cpu_environment(job->lights, p, n, job->zonal, job->eta, sky);
+        vec3_add_scaled(sum, sky, 1.0f);
+    }
+}
+
+static void irradiance_piece(void *context, size_t piece)
+{
+    const irradiance_job *job = context;
+    uint32_t first = (uint32_t)piece * TEXEL_PIECE;
+    for (uint32_t t = first; t < first + TEXEL_PIECE && t < job->body->texel_count; t++) {
+        irradiance_of_texel(job, t, job->irradiance[t]);
+    }
+}
+
+void parian_cpu_irradiance(const parian_env *env, const parian_cpu_lights *lights, const parian_body *body,
+                           float eta, const float zonal[3], float (*irradiance)[3])
+{
+    irradiance_job job = {lights, body, eta, zonal, irradiance};
+    parian_par(env, (body->texel_count + TEXEL_PIECE - 1) / TEXEL_PIECE, irradiance_piece, &job);
+}

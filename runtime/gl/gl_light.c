@@ -1,0 +1,104 @@
+/* gl_light.c - light tables, projected pictures and shadow maps in GL.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "core/memory.h"
+#include "gl/gl_state.h"
+
+static parian_result upload_tables(gl_device *device, const parian_light_list *list, gl_state *state)
+{
+    float(*samples)[4] = NULL, (*layers)[4] = NULL;
+    parian_result result = PARIAN_E_NOMEM;
+    if (!PARIAN_NEW0(device->env, samples, ((size_t)list->sample_count + 1) * PARIAN_LIGHT_ROW) ||
+        !PARIAN_NEW0(device->env, layers, ((size_t)list->layer_count + 1) * PARIAN_LAYER_ROW)) {
+        parian_fail(device->env, result, "no memory for %u light samples", list->sample_count);
+        goto done;
+    }
+    parian_light_list_tables(list, samples, layers);
+    result = gl_texture_create(device, GL_FORMAT_RGBA32F, PARIAN_LIGHT_ROW, list->sample_count + 1, samples,
+                               &state->light);
+    if (result == PARIAN_OK) {
+        result = gl_texture_create(device, GL_FORMAT_RGBA32F, PARIAN_LAYER_ROW, list->layer_count + 1, layers,
+                                   &state->layer);
+    }
+done:
+    parian_free(device->env, samples);
+    parian_free(device->env, layers);
+    return result;
+}
+
+parian_result gl_lights_upload(parian_renderer *renderer)
+{
+    gl_state *state = renderer->state;
+    gl_device *device = &state->device;
+    const parian_light_list *list = &renderer->lights;
+    gl_texture_destroy(device, &state->light);
+    gl_texture_destroy(device, &state->layer);
+    gl_texture_destroy(device, &state->image);
+    parian_result result = upload_tables(device, list, state);
+    if (result == PARIAN_OK) {
+        result = gl_array_upload(device, GL_FORMAT_RGBA32F, list->image_total, list->image, &state->image);
+    }
+    uint32_t size = list->layer_count ? list->shadow_size : 1, layers = list->layer_count ? list->layer_count : 1;
+    if (result == PARIAN_OK && (state->shadow.width != size || state->shadow.layers != layers)) {
+        gl_texture_destroy(device, &state->shadow);
+        result = gl_depth_create(device, size, layers, &state->shadow);
+    }
+    return result;
+}
+
+static void draw_layer(parian_renderer *renderer, const parian_shadow_layer *layer)
+{
+    gl_state *state = renderer->state;
+    const parian_scene_data *data = &renderer->scene->data;
+    const float fit[4] = {layer->texel_scale, layer->perspective ? 1.0f : 0.0f, layer->near_m, layer->far_m};
+    gl_pass_vec4(&state->device, "u_row", 4, &layer->row[0][0]);
+    gl_pass_vec4(&state->device, "u_fit", 1, fit);
+    for (uint32_t b = 0; b < data->body_count; b++) {
+        gl_mesh_draw(&state->device, &state->body[b].mesh);
+    }
+    for (uint32_t s = 0; s < data->surrounding_count; s++) {
+        gl_mesh_draw(&state->device, &state->surrounding[s]);
+    }
+}
+
+parian_result gl_shadow_run(parian_renderer *renderer)
+{
+    gl_state *state = renderer->state;
+    const parian_gl_api *gl = &state->device.gl;
+    const GLenum none = GL_NONE;
+    const GLfloat farthest = 1.0f;
+    gl_pass_begin(&state->device, GL_PROGRAM_SHADOW, NULL, 0);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, state->shadow_framebuffer);
+    gl->DrawBuffers(1, &none);
+    gl->ReadBuffer(GL_NONE);
+    gl->Viewport(0, 0, (GLsizei)state->shadow.width, (GLsizei)state->shadow.height);
+    gl->Enable(GL_DEPTH_TEST);
+    for (uint32_t l = 0; l < renderer->lights.layer_count; l++) {
+        gl->FramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, state->shadow.name, 0, (GLint)l);
+        if (l == 0 && gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+            return parian_fail(state->device.env, PARIAN_E_DEVICE, "this OpenGL cannot draw %u shadow maps of %u texels",
+                               state->shadow.layers, state->shadow.width);
+        }
+        gl->ClearBufferfv(GL_DEPTH, 0, &farthest);
+        draw_layer(renderer, &renderer->lights.layer[l]);
+    }
+    gl->Disable(GL_DEPTH_TEST);
+    return PARIAN_OK;
+}
+
+void gl_pass_lights(const parian_renderer *renderer)
+{
+    gl_state *state = renderer->state;
+    gl_device *device = &state->device;
+    const parian_light_list *list = &renderer->lights;
+    gl_pass_texture(device, "u_light", &state->light);
+    gl_pass_texture(device, "u_layer", &state->layer);
+    gl_pass_texture(device, "u_shadow", &state->shadow);
+    gl_pass_texture(device, "u_image", &state->image);
+    gl_pass_int(device, "u_light_count", (int)list->sample_count);
+    gl_pass_int(device, "u_shadow_size", (int)state->shadow.width);
+    gl_pass_float(device, "u_lift", parian_renderer_shadow_lift(renderer));
+    gl_pass_int(device, "u_environment", list->has_environment ? 1 : 0);
+    gl_pass_vec3(device, "u_sh", PARIAN_SH_COUNT, &list->environment_sh[0][0]);
+}

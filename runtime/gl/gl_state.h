@@ -1,0 +1,51 @@
+/* gl_state.h - everything that a renderer holds in its GL context.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef PARIAN_GL_STATE_H
+#define PARIAN_GL_STATE_H
+
+#include "gl/gl_body.h"
+#include "gl/gl_device.h"
+
+enum { GL_REDUCTION_MAX = 8 };
+
+/* Targets of a picture of one size. */
+typedef struct gl_picture {
+    uint32_t width, height, side; /* pixels; samples along a side of one */
+    GLuint framebuffer, depth;
+    uint64_t depth_size;
+    gl_texture samples, picture, srgb;
+    gl_texture reduction[GL_REDUCTION_MAX]; /* ever smaller sums, 8 x 8 to one */
+    int reduction_count;
+    gl_texture mean, logs; /* 1 x 1 */
+} gl_picture;
+
+typedef struct gl_state {
+    gl_device device;
+    gl_body *body;              /* [body_count] */
+    gl_mesh *surrounding;       /* [surrounding_count] */
+    gl_texture light, layer, image, shadow;
+    GLuint shadow_framebuffer;
+    gl_picture picture;
+} gl_state;
+
+/* gl_light.c: upload the light tables and pictures; draw the shadow maps; set what shaders/lights.glsl reads. */
+parian_result gl_lights_upload(parian_renderer *renderer);
+parian_result gl_shadow_run(parian_renderer *renderer);
+void gl_pass_lights(const parian_renderer *renderer);
+
+/* gl_transfer.c: the passes from E to the shown atlases, each for all bodies. */
+void gl_irradiance_run(parian_renderer *renderer);
+void gl_restrict_run(parian_renderer *renderer);
+void gl_product_run(parian_renderer *renderer);
+void gl_filter_run(parian_renderer *renderer);
+void gl_gutter_run(parian_renderer *renderer);
+
+/* gl_picture.c */
+parian_result gl_picture_prepare(parian_renderer *renderer, uint32_t width, uint32_t height);
+void gl_picture_destroy(gl_device *device, gl_picture *picture);
+void gl_shade_run(parian_renderer *renderer, const parian_draw_desc *desc);
+void gl_tone_run(parian_renderer *renderer, const parian_draw_desc *desc);
+
+#endif

@@ -1,0 +1,88 @@
+/* renderer_internal.h - what a renderer holds, and what a backend (GL, C) must do for it.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef PARIAN_RENDERER_INTERNAL_H
+#define PARIAN_RENDERER_INTERNAL_H
+
+#include "core/body.h"
+#include "lights/light_list.h"
+#include "parian/runtime.h"
+#include "scene_internal.h"
+#include "shade/body_optics.h"
+
+typedef enum parian_pass {
+    PARIAN_PASS_SHADOW,
+    PARIAN_PASS_IRRADIANCE,
+    PARIAN_PASS_RESTRICT,
+    PARIAN_PASS_PRODUCT,
+    PARIAN_PASS_FILTER,
+    PARIAN_PASS_GUTTER,
+    PARIAN_PASS_SHADE,
+    PARIAN_PASS_TONE,
+    PARIAN_PASS_COUNT
+} parian_pass;
+
+/* Per-texel results of a body. */
+typedef enum parian_texel_result {
+    PARIAN_RESULT_IRRADIANCE,
+    PARIAN_RESULT_LOCAL,
+    PARIAN_RESULT_GLOBAL
+} parian_texel_result;
+
+/* A backend's functions; state is renderer->state. */
+typedef struct parian_backend_table {
+    parian_result (*create)(parian_renderer *renderer);
+    void (*destroy)(parian_renderer *renderer);
+    /* The lights changed: make E, the registers, the local and global part, and their gutters. */
+    parian_result (*relight)(parian_renderer *renderer);
+    /* Shade and tone-map; keeps the pictures. */
+    parian_result (*draw)(parian_renderer *renderer, const parian_draw_desc *desc);
+    /* The linear picture of the last draw, rows from top to bottom; and the tone-mapped one. */
+    parian_result (*read_picture)(parian_renderer *renderer, float (*radiance)[4], uint8_t (*srgb)[4]);
+    /* A result at owned texels of one body: [texel_count]. */
+    parian_result (*read_texels)(parian_renderer *renderer, uint32_t body, parian_texel_result which,
+                                 float (*value)[3]);
+    /* A register of one body: [size of the register]; register 0 is Phi, 1 is B at vertices. */
+    parian_result (*read_register)(parian_renderer *renderer, uint32_t body, uint32_t index,
+                                   float (*value)[3]);
+    uint64_t (*memory)(const parian_renderer *renderer);
+} parian_backend_table;
+
+extern const parian_backend_table parian_gl_backend, parian_cpu_backend;
+
+enum { PARIAN_RENDERER_NAME_MAX = 256 };
+struct parian_renderer {
+    parian_env env;
+    const parian_scene *scene;
+    parian_renderer_desc desc;
+    const parian_backend_table *backend;
+    void *state;
+    char name[PARIAN_RENDERER_NAME_MAX];
+    parian_settings settings;
+    parian_light_list lights;
+    parian_body_optics *optics; /* [body_count] */
+    bool lights_changed; /* since the last relight */
+    bool timing;
+    double pass_start;
+    parian_pass_time pass[PARIAN_PASS_COUNT];
+    uint32_t picture_width, picture_height; /* of the last draw, 0 before */
+};
+
+/* Bracket a pass: counts its runs and, with timing on, its milliseconds. */
+void parian_renderer_begin_pass(parian_renderer *renderer);
+void parian_renderer_end_pass(parian_renderer *renderer, parian_pass pass);
+
+/* Number of registers that a body's operators use (at least 2), and the size of one. */
+uint32_t parian_body_register_count(const parian_body *body);
+uint32_t parian_body_register_size(const parian_body *body, uint32_t index);
+
+/* Distance by which a shaded point is lifted along its normal before shadow look-ups, metres, beyond what
+ * the shadow texel asks for. */
+float parian_renderer_shadow_lift(const parian_renderer *renderer);
+
+/* Tests: a register of a body after relighting. */
+parian_result parian_renderer_read_register(parian_renderer *renderer, uint32_t body, uint32_t index,
+                                            float (*value)[3]);
+
+#endif

@@ -1,0 +1,20 @@
+/* view.h - a camera as the shading passes need it.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef PARIAN_VIEW_H
+#define PARIAN_VIEW_H
+
+#include "parian/runtime.h"
+
+typedef struct parian_view {
+    float clip[16]; /* projection times view, column-major */
+    float eye[4];   /* position and 1, or, without perspective, the direction to the viewer and 0 */
+} parian_view;
+
+parian_view parian_view_make(const parian_camera *camera);
+
+/* Samples for a side of a picture pixel, so that neither side exceeds side_max. */
+uint32_t parian_view_supersampling(uint32_t width, uint32_t height, uint32_t side_max);
+
+#endif
