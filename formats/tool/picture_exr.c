@@ -17,8 +17,9 @@ typedef struct exr_job {
     const char *path;
     exr_context_t context;
     uint32_t width, height;
-    int32_t left, top; /* of the data window */
+    int32_t top; /* of the data window */
     float (*rgb)[3];
+    bool dwa; /* compressed in a way that OpenEXRCore does not know */
     char message[200];
 } exr_job;
 
@@ -212,7 +213,9 @@ static parian_result check_channels(const exr_job *job)
 static parian_result read_header(exr_job *job)
 {
     exr_attr_box2i_t window;
+    exr_compression_t compression;
     exr_result_t code = exr_get_data_window(job->context, 0, &window);
+    code = code == EXR_ERR_SUCCESS ? exr_get_compression(job->context, 0, &compression) : code;
     if (code != EXR_ERR_SUCCESS) {
         return fail_exr(job, PARIAN_E_FORMAT, code);
     }
@@ -223,8 +226,8 @@ static parian_result read_header(exr_job *job)
                                   height > 0 ? (uint64_t)height : 0);
     job->width = (uint32_t)width;
     job->height = (uint32_t)height;
-    job->left = window.min.x;
     job->top = window.min.y;
+    job->dwa = compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB;
     return result == PARIAN_OK ? check_channels(job) : result;
 }
 
@@ -307,6 +310,10 @@ static parian_result read_pixels(exr_job *job)
     exr_storage_t storage;
     exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
     exr_result_t code = exr_get_storage(job->context, 0, &storage);
+    if (code == EXR_ERR_SUCCESS && job->dwa) {
+        return parian_exr_read_dwa(job->stream.env, job->path, &job->width, &job->height,
+                                   &job->rgb);
+    }
     if (code == EXR_ERR_SUCCESS && storage != EXR_STORAGE_SCANLINE &&
         storage != EXR_STORAGE_TILED) {
         return parian_fail(job->stream.env, PARIAN_E_UNSUPPORTED,

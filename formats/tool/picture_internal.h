@@ -27,4 +27,8 @@ bool parian_byte_stream_put(parian_byte_stream *stream, size_t offset, const voi
 parian_result parian_picture_check_size(const parian_env *env, const char *path, uint64_t width,
                                         uint64_t height);
 
+/* As parian_exr_read, for DWAA and DWAB compression; values are halves. */
+parian_result parian_exr_read_dwa(const parian_env *env, const char *path, uint32_t *width,
+                                  uint32_t *height, float (**rgb)[3]);
+
 #endif
