@@ -307,8 +307,8 @@ static void warn_of_unknown_keys(const source_text *text, size_t type, const cJS
             known = known || strcmp(item->string, types[type].key[k]) == 0;
         }
         if (!known) {
-            parian_log(text->env, PARIAN_LOG_WARNING, "%s: a %s light has no '%s'; it is ignored",
-                       text->where, types[type].name, item->string);
+            parian_log(text->env, PARIAN_LOG_WARNING, "%s: '%s' is no key of type '%s'; it is ignored",
+                       text->where, item->string, types[type].name);
         }
     }
 }
