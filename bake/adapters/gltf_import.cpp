@@ -83,7 +83,6 @@ using point = std::array<double, 3>;
 struct part_builder {
     std::string name, mesh_name;
     int source_material = -1;
-    double scale = 1; /* of lengths: cube root of |det| */
     bool has_normal = true, has_uv = false;
     std::vector<point> position;
     std::vector<std::array<uint32_t, 3>> triangle;
@@ -107,7 +106,7 @@ class scene_builder
                        const double (&normal_matrix)[9], const std::string &where,
                        part_builder &part);
     part_builder &find_part(size_t first, const std::string &name, const tinygltf::Mesh &mesh,
-                            int material, double scale);
+                            int material);
     void fill_part(const part_builder &source, parian_source_part &target,
                    std::vector<parian_source_material> &materials, picture_table &pictures);
     uint32_t find_material(const part_builder &part, std::vector<parian_source_material> &materials,
@@ -118,8 +117,7 @@ class scene_builder
     std::vector<bool> visited_;
     std::vector<part_builder> parts_;
     std::vector<parian_light> lights_;
-    std::vector<std::pair<int, double>>
-        material_keys_; /* glTF material and scale of each of ours */
+    std::vector<int> material_keys_; /* glTF material of each of ours */
     size_t triangle_total_ = 0;
 };
 
@@ -185,7 +183,7 @@ void scene_builder::walk()
 }
 
 part_builder &scene_builder::find_part(size_t first, const std::string &name,
-                                       const tinygltf::Mesh &mesh, int material, double scale)
+                                       const tinygltf::Mesh &mesh, int material)
 {
     for (size_t i = first; i < parts_.size(); i++) {
         if (parts_[i].source_material == material) {
@@ -196,7 +194,6 @@ part_builder &scene_builder::find_part(size_t first, const std::string &name,
     parts_.back().name = name;
     parts_.back().mesh_name = mesh.name;
     parts_.back().source_material = material;
-    parts_.back().scale = scale;
     return parts_.back();
 }
 
@@ -234,7 +231,7 @@ void scene_builder::add_mesh(const tinygltf::Node &node, size_t node_index, cons
             continue;
         }
         add_primitive(data, world, determinant, normal_matrix, where,
-                      find_part(first, name, mesh, material, std::cbrt(std::fabs(determinant))));
+                      find_part(first, name, mesh, material));
     }
 }
 
@@ -290,19 +287,14 @@ uint32_t scene_builder::find_material(const part_builder &part,
     if (part.source_material < 0) {
         return no_material;
     }
-    parian_source_material made = read_material(file_.model, size_t(part.source_material));
-    bool scaled = std::isfinite(made.attenuation_distance) && part.scale > 0;
-    double scale = scaled ? part.scale : 1;
-    for (size_t i = 0; i < material_keys_.size(); i++) {
-        if (material_keys_[i].first == part.source_material &&
-            std::fabs(material_keys_[i].second - scale) <= 1e-6 * scale) {
-            return uint32_t(i);
-        }
+    auto known = std::find(material_keys_.begin(), material_keys_.end(), part.source_material);
+    if (known != material_keys_.end()) {
+        return uint32_t(known - material_keys_.begin());
     }
-    made.attenuation_distance *= scale;
+    parian_source_material made = read_material(file_.model, size_t(part.source_material));
     made.base_color_picture = pictures.find(size_t(part.source_material));
     materials.push_back(made);
-    material_keys_.emplace_back(part.source_material, scale);
+    material_keys_.push_back(part.source_material);
     return uint32_t(materials.size() - 1);
 }
 

@@ -1,4 +1,5 @@
-/* import.h - the scene that a bake starts from: bodies with media, surroundings, lights. First stage.
+/* import.h - the scene that a bake starts from: bodies with media, surroundings, lights. First
+ * stage.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -22,13 +23,14 @@ typedef struct parian_picture {
 /* The surface and volume description of a source material (glTF: with its extensions' defaults). */
 typedef struct parian_source_material {
     char name[PARIAN_NAME_MAX];
-    float base_color[4];       /* linear factor */
+    float base_color[4];        /* linear factor */
     int32_t base_color_picture; /* index into the scene's pictures, or -1 */
-    bool has_volume;           /* KHR_materials_volume present */
-    bool has_scatter;          /* KHR_materials_scatter or KHR_materials_volume_scatter present */
-    bool new_draft;            /* KHR_materials_scatter, which replaces KHR_materials_volume_scatter:
-                                * albedo (1-s^2)/(1-g s^2); else 1-s^2 */
-    double attenuation_distance; /* metres after node scale; infinity where absent */
+    bool has_volume;            /* KHR_materials_volume present */
+    bool has_scatter;           /* KHR_materials_scatter or KHR_materials_volume_scatter present */
+    bool new_draft; /* KHR_materials_scatter, which replaces KHR_materials_volume_scatter:
+                     * albedo (1-s^2)/(1-g s^2); else 1-s^2 */
+    double
+        attenuation_distance; /* metres in world space, unscaled by nodes; infinity where absent */
     double attenuation_color[3];
     double multiscatter_color[3]; /* times the scatter strength, if any */
     double scatter_anisotropy;

@@ -109,11 +109,13 @@ static parian_result read_scattering(const medium_file *file, parian_medium *med
 static parian_result read_eta(const medium_file *file, double *eta)
 {
     const cJSON *item = member(file, "eta");
-    if (!cJSON_IsNumber(item)) {
-        return parian_fail(file->env, PARIAN_E_FORMAT, "%s: \"eta\" is %s, expected a number",
-                           file->path, item ? "not a number" : "missing");
+    if (item && !cJSON_IsNumber(item)) {
+        return parian_fail(file->env, PARIAN_E_FORMAT, "%s: \"eta\" is not a number", file->path);
     }
-    *eta = item->valuedouble;
+    if (!item) {
+        parian_log(file->env, PARIAN_LOG_WARNING, "%s: \"eta\" is missing, taken as 1.3", file->path);
+    }
+    *eta = item ? item->valuedouble : 1.3;
     return PARIAN_OK;
 }
 
