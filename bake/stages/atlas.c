@@ -11,15 +11,15 @@
 #include "bake/stages/chart.h"
 #include "core/memory.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum {
     SIDE_MIN = 16,
     SIDE_MAX = 8192,
     PACK_SIDE = 512, /* packing grids have about this many cells a side, whatever the atlas has */
-    SCALE_STEPS = 7
+    SCALE_STEPS = 7,
+    RELAXATION_ROUNDS = 3
 };
-static const double OCCUPANCY_MOST = 0.93;   /* tried first */
+static const double MERGE_WIDENING = 1.25, RELAX_WIDENING = 1.15; /* of the chart angle */
+static const double OCCUPANCY_MOST = 0.93;                        /* tried first */
 static const double OCCUPANCY_LEAST = 0.50;  /* below it the search walks down by halves */
 static const double MEAN_CHART_TEXELS = 2.0; /* below it an atlas carries nothing but gutters */
 
@@ -202,17 +202,31 @@ static void fill_report(const atlas_job *job, double occupancy, double texels_pe
     report->stretch_max = most;
 }
 
+/* Grow, then merge and relax in turns. A union's average normal differs from its parts', so the
+ * limits of merging and relaxing are a little wider than that of growth. */
+static parian_result cut_charts(const parian_env *env, chart_set *set, double angle_deg)
+{
+    parian_result result = chart_set_grow(env, set, angle_deg);
+    for (int round = 0; round < RELAXATION_ROUNDS && result == PARIAN_OK; round++) {
+        result = chart_set_merge(env, set, MERGE_WIDENING * angle_deg);
+        if (result == PARIAN_OK) {
+            result = chart_set_relax(env, set, RELAX_WIDENING * angle_deg);
+        }
+        if (result == PARIAN_OK && parian_cancelled(env)) {
+            result = PARIAN_E_INTERRUPTED;
+        }
+    }
+    if (result == PARIAN_OK) {
+        result = chart_set_merge(env, set, MERGE_WIDENING * angle_deg);
+    }
+    return result == PARIAN_OK ? chart_set_split(env, set) : result;
+}
+
 static parian_result make_charts(atlas_job *job, const parian_body *body, double angle_deg)
 {
     parian_result result = chart_set_create(job->env, body, &job->set);
     if (result == PARIAN_OK) {
-        result = chart_set_grow(job->env, &job->set, cos(angle_deg * pi / 180.0));
-    }
-    if (result == PARIAN_OK) {
-        result = chart_set_merge(job->env, &job->set, angle_deg);
-    }
-    if (result == PARIAN_OK) {
-        result = chart_set_split(job->env, &job->set);
+        result = cut_charts(job->env, &job->set, angle_deg);
     }
     if (result == PARIAN_OK) {
         result = chart_set_flatten(job->env, &job->set);

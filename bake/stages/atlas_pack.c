@@ -1,7 +1,7 @@
 /* atlas_pack.c - places the rasterised shapes of charts in a square, largest first, bottom-left.
  *
  * Shapes, not boxes, are placed: a chart is the set of cells that it touches, and slips into any
- * gap that takes it, in either of two orientations. Every row of the grid knows the next blocked
+ * gap that takes it, in any of four orientations. Every row of the grid knows the next blocked
  * and the next free cell, so that a scan for a place leaps over what is taken.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
@@ -39,8 +39,10 @@ void chart_place_point(const chart_place *place, double scale, const double flat
 {
     double u = flat[0] * scale + place->slack[0];
     double v = flat[1] * scale + place->slack[1];
-    out[0] = place->x + (place->turned ? place->height - v : u);
-    out[1] = place->y + (place->turned ? u : v);
+    double w = place->width, h = place->height;
+    const double turned[4][2] = {{u, v}, {h - v, u}, {w - u, h - v}, {v, w - u}};
+    out[0] = place->x + turned[place->quarter][0];
+    out[1] = place->y + turned[place->quarter][1];
 }
 
 /* Mark the cells that a triangle touches, row by row: the part of it within a row is convex, so the
@@ -75,27 +77,28 @@ static void mark_triangle(const double corner[3][2], uint32_t width, uint32_t he
     }
 }
 
-/* Write the runs of a mask, read along rows or, turned, along columns from the far end; their
- * number. */
-static uint32_t find_runs(const uint8_t *mask, uint32_t width, uint32_t height, bool turned,
+/* Write the runs of a mask seen after quarter turns; their number. */
+static uint32_t find_runs(const uint8_t *mask, uint32_t width, uint32_t height, uint32_t quarter,
                           run *out)
 {
-    uint32_t rows = turned ? width : height, length = turned ? height : width, count = 0;
+    uint32_t rows = quarter % 2 ? width : height, length = quarter % 2 ? height : width, count = 0;
     for (uint32_t y = 0; y < rows; y++) {
+        /* Cells of the turned row lie at start + x * step. */
+        ptrdiff_t w = width, h = height, v = y;
+        const ptrdiff_t starts[4] = {v * w, (h - 1) * w + v, h * w - 1 - v * w, w - 1 - v};
+        const ptrdiff_t steps[4] = {1, -w, -1, w};
+        const uint8_t *cell = mask + starts[quarter];
         for (uint32_t x = 0, begin = 0; x <= length; x++) {
-            bool set = x < length &&
-                       mask[turned ? (size_t)(height - 1 - x) * width + y : (size_t)y * width + x];
-            bool before = x > begin;
-            if (set && !before) {
-                begin = x;
+            if (x < length && cell[(ptrdiff_t)x * steps[quarter]]) {
+                continue;
             }
-            if (!set) {
-                if (before && out) {
+            if (x > begin) {
+                if (out) {
                     out[count] = (run){(uint16_t)y, (uint16_t)begin, (uint16_t)x};
                 }
-                count += before;
-                begin = x + 1;
+                count++;
             }
+            begin = x + 1;
         }
     }
     return count;
@@ -117,13 +120,12 @@ static bool measure_box(const packer *p, uint32_t chart, chart_place *place)
     return true;
 }
 
-/* Rasterise a chart into the mask and list the runs of both orientations. */
-static bool make_shapes(packer *p, uint32_t chart, const chart_place *place, shape out[2])
+/* Rasterise a chart into the mask and list the runs of its four orientations. */
+static bool make_shapes(packer *p, uint32_t chart, const chart_place *place, shape out[4])
 {
     const chart_set *set = p->set;
     chart_place still = *place;
-    still.x = still.y = 0;
-    still.turned = false;
+    still.x = still.y = still.quarter = 0;
     memset(p->mask, 0, (size_t)place->width * place->height);
     for (uint32_t i = set->chart_begin[chart]; i < set->chart_begin[chart + 1]; i++) {
         double corner[3][2];
@@ -133,25 +135,26 @@ static bool make_shapes(packer *p, uint32_t chart, const chart_place *place, sha
         }
         mark_triangle((const double(*)[2])corner, place->width, place->height, p->mask);
     }
-    uint32_t count[2], begin = 0;
-    for (int turned = 0; turned < 2; turned++) {
-        count[turned] = find_runs(p->mask, place->width, place->height, turned, NULL);
+    size_t total = 0;
+    for (uint32_t quarter = 0; quarter < 4; quarter++) {
+        total += find_runs(p->mask, place->width, place->height, quarter, NULL);
     }
-    if ((size_t)count[0] + count[1] > p->run_room) {
+    if (total > p->run_room) {
         parian_free(p->env, p->scratch);
-        p->run_room = 2 * ((size_t)count[0] + count[1]);
+        p->run_room = 2 * total;
         if (!PARIAN_NEW(p->env, p->scratch, p->run_room)) {
             p->run_room = 0;
             return false;
         }
     }
-    for (int turned = 0; turned < 2; turned++) {
-        out[turned].width = turned ? place->height : place->width;
-        out[turned].height = turned ? place->width : place->height;
-        out[turned].runs = p->scratch + begin;
-        out[turned].run_count =
-            find_runs(p->mask, place->width, place->height, turned, out[turned].runs);
-        begin += count[turned];
+    run *next = p->scratch;
+    for (uint32_t quarter = 0; quarter < 4; quarter++) {
+        shape *s = &out[quarter];
+        s->width = quarter % 2 ? place->height : place->width;
+        s->height = quarter % 2 ? place->width : place->height;
+        s->runs = next;
+        s->run_count = find_runs(p->mask, place->width, place->height, quarter, next);
+        next += s->run_count;
     }
     return true;
 }
@@ -238,7 +241,7 @@ static void block_shape(packer *p, const shape *s, uint32_t x, uint32_t y)
 /* Place one chart; false where there is no room. */
 static parian_result place_chart(packer *p, uint32_t chart, chart_place *place, bool *fits)
 {
-    shape shapes[2];
+    shape shapes[4];
     uint32_t top = 0xFFFFFFFFu, x = 0, y = 0;
     *fits = measure_box(p, chart, place);
     if (!*fits) {
@@ -247,17 +250,17 @@ static parian_result place_chart(packer *p, uint32_t chart, chart_place *place, 
     if (!make_shapes(p, chart, place, shapes)) {
         return PARIAN_E_NOMEM;
     }
-    for (int turned = 0; turned < 2; turned++) {
-        if (find_place(p, &shapes[turned], top, &x, &y)) {
-            top = y + shapes[turned].height;
-            place->turned = turned;
+    for (uint32_t quarter = 0; quarter < 4; quarter++) {
+        if (find_place(p, &shapes[quarter], top, &x, &y)) {
+            top = y + shapes[quarter].height;
+            place->quarter = quarter;
             place->x = x;
             place->y = y;
         }
     }
     *fits = top != 0xFFFFFFFFu;
     if (*fits) {
-        block_shape(p, &shapes[place->turned], place->x, place->y);
+        block_shape(p, &shapes[place->quarter], place->x, place->y);
     }
     return PARIAN_OK;
 }

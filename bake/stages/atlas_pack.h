@@ -12,7 +12,7 @@ typedef struct chart_place {
     uint32_t x, y;
     uint32_t width, height; /* of the box before it is turned, cells */
     double slack[2];        /* free room at the low sides of the box before it is turned, cells */
-    bool turned;            /* by 90 degrees: (u, v) goes to (height - v, u) */
+    uint32_t quarter;       /* counterclockwise quarter turns: 1 takes (u, v) to (height - v, u) */
 } chart_place;
 
 typedef struct pack_grid {

@@ -44,8 +44,10 @@ void chart_set_free(const parian_env *env, chart_set *set);
 
 /* Give every triangle a chart whose triangles deviate by at most the angle from its average normal.
  */
-parian_result chart_set_grow(const parian_env *env, chart_set *set, double cos_angle);
-/* Join neighbouring charts where the angle allows, and tiny ones more willingly. */
+parian_result chart_set_grow(const parian_env *env, chart_set *set, double angle_deg);
+/* Grow all charts again at once, from their centres, each held to its present average normal. */
+parian_result chart_set_relax(const parian_env *env, chart_set *set, double angle_deg);
+/* Join neighbouring charts whose union keeps to the angle, and small ones at wider angles. */
 parian_result chart_set_merge(const parian_env *env, chart_set *set, double angle_deg);
 /* Cut charts whose orthographic projection overlaps itself. */
 parian_result chart_set_split(const parian_env *env, chart_set *set);

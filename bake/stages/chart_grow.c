@@ -2,9 +2,9 @@
  *
  * A first pass grows one chart after another from the flattest triangle left, nearest triangles
  * first, as long as they deviate little from the running average normal [Lensch02]. It leaves
- * ragged remains between charts, so all charts are then grown again at the same time from their
- * centres, as in Lloyd's method: charts become compact, and compact charts waste fewer texels on
- * borders and gutters.
+ * ragged remains between charts, which are merged (chart_merge.c); then all charts are grown again
+ * at the same time from their centres, as in Lloyd's method, and merged again: charts become fewer
+ * and compact, and compact charts waste fewer texels on borders and gutters.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -13,8 +13,7 @@
 
 #include "bake/stages/chart.h"
 #include "core/memory.h"
-
-enum { RELAXATION_ROUNDS = 3 };
+#include "core/small_maths.h"
 
 /* What a chart is like while it grows: its seed and the direction its triangles are held to. */
 typedef struct proxy {
@@ -222,26 +221,38 @@ static chart_heap_entry *order_seeds(const parian_env *env, const chart_set *set
     return order;
 }
 
-parian_result chart_set_grow(const parian_env *env, chart_set *set, double cos_angle)
+static parian_result finish_growth(growth *g, chart_heap_entry *order, parian_result result)
 {
-    growth g = {.env = env, .set = set, .cos_angle = cos_angle};
-    chart_heap_entry *order = order_seeds(env, set);
-    parian_result result = PARIAN_E_NOMEM;
-    set->chart_count = 0;
-    if (order && grow_remaining(&g, order)) {
-        result = PARIAN_OK;
-    }
-    for (int round = 0; round < RELAXATION_ROUNDS && result == PARIAN_OK; round++) {
-        result = parian_cancelled(env) ? PARIAN_E_INTERRUPTED : grow_together(&g, order);
-    }
     if (result == PARIAN_OK) {
-        result = chart_set_list(env, set);
+        result = chart_set_list(g->env, g->set);
     } else if (result == PARIAN_E_NOMEM) {
-        parian_fail(env, result, "no memory for growing charts over %u triangles",
-                    set->triangle_count);
+        parian_fail(g->env, result, "no memory for growing charts over %u triangles",
+                    g->set->triangle_count);
     }
-    parian_free(env, g.heap.entry);
-    parian_free(env, g.proxies);
-    parian_free(env, order);
+    parian_free(g->env, g->heap.entry);
+    parian_free(g->env, g->proxies);
+    parian_free(g->env, order);
     return result;
+}
+
+parian_result chart_set_grow(const parian_env *env, chart_set *set, double angle_deg)
+{
+    growth g = {.env = env, .set = set, .cos_angle = cos(angle_deg * PARIAN_PI / 180.0)};
+    chart_heap_entry *order = order_seeds(env, set);
+    set->chart_count = 0;
+    bool grown = order && grow_remaining(&g, order);
+    return finish_growth(&g, order, grown ? PARIAN_OK : PARIAN_E_NOMEM);
+}
+
+parian_result chart_set_relax(const parian_env *env, chart_set *set, double angle_deg)
+{
+    growth g = {.env = env, .set = set, .cos_angle = cos(angle_deg * PARIAN_PI / 180.0)};
+    chart_heap_entry *order = order_seeds(env, set);
+    uint32_t count = set->chart_count;
+    bool ready = order != NULL;
+    set->chart_count = 0;
+    while (ready && set->chart_count < count) {
+        ready = add_proxy(&g, 0);
+    }
+    return finish_growth(&g, order, ready ? grow_together(&g, order) : PARIAN_E_NOMEM);
 }

@@ -1,9 +1,9 @@
 /* chart_merge.c - joins neighbouring charts: fewer charts have fewer borders and gutters.
  *
  * Two charts may become one when all their triangles stay within the angle of the common average
- * normal and the union is compact. What is still tiny afterwards (noise, creases) joins a neighbour
- * at wider angles: at 60 degrees its texels are stretched by two, which costs less than a chart of
- * a few texels.
+ * normal and the union is compact. What is small afterwards (noise, creases) joins a neighbour at
+ * wider angles, the smaller the wider: a few texels stretched by two cost less than a chart of a
+ * few texels, which is nothing but border.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -12,11 +12,13 @@
 
 #include "bake/stages/chart.h"
 #include "core/memory.h"
+#include "core/small_maths.h"
 
-static const double pi = 3.14159265358979323846;
-
-static const double TINY_SHARE =
-    1.0 / 1500.0; /* of the surface: some hundred texels of a 512 x 512 atlas */
+/* Charts below a share of the surface may be joined up to a multiple of the angle. */
+static const struct {
+    double share, widening;
+} SMALL_CHARTS[] = {{1.0 / 100, 1.2}, {1.0 / 200, 1.4}, {1.0 / 500, 1.6}, {1.0 / 1400, 1.9}};
+static const double ANGLE_MAX_DEG = 72.0; /* stretch of 3.2; below the limit of chart_split.c */
 static const double ROUNDNESS_MAX =
     2.6; /* perimeter^2 / (4 pi area); a square has 1.27, a 1:4 strip 2 */
 
@@ -49,7 +51,7 @@ static double joined_roundness(const merger *m, const region_pair *pair)
 {
     const region *a = &m->regions[pair->a], *b = &m->regions[pair->b];
     double perimeter = a->perimeter + b->perimeter - 2.0 * pair->shared;
-    return perimeter * perimeter / (4.0 * pi * fmax(a->area + b->area, 1e-300));
+    return perimeter * perimeter / (4.0 * PARIAN_PI * fmax(a->area + b->area, 1e-300));
 }
 
 static bool queue_pair(merger *m, uint32_t a, uint32_t b, double shared)
@@ -64,7 +66,7 @@ static bool queue_pair(merger *m, uint32_t a, uint32_t b, double shared)
     } else {
         double before = fmax(p->perimeter * p->perimeter / fmax(p->area, 1e-300),
                              q->perimeter * q->perimeter / fmax(q->area, 1e-300)) /
-                        (4.0 * pi);
+                        (4.0 * PARIAN_PI);
         if (cost > fmax(ROUNDNESS_MAX, 0.8 * before)) {
             return true;
         }
@@ -159,7 +161,7 @@ static void join_regions(merger *m, const region_pair *pair)
 static parian_result merge_pass(merger *m, double angle_deg, double tiny_area)
 {
     chart_heap_entry entry;
-    m->cos_angle = cos(angle_deg * pi / 180.0);
+    m->cos_angle = cos(angle_deg * PARIAN_PI / 180.0);
     m->tiny_area = tiny_area;
     m->pair_count = 0;
     for (uint32_t c = 0; c < m->set->chart_count; c++) {
@@ -230,7 +232,7 @@ static parian_result straighten(const parian_env *env, chart_set *set, double an
 {
     parian_result result = PARIAN_OK;
     for (int round = 0; round < 2 && result == PARIAN_OK; round++) {
-        straighten_borders(set, cos(angle_deg * pi / 180.0));
+        straighten_borders(set, cos(angle_deg * PARIAN_PI / 180.0));
         result = chart_set_list(env, set);
     }
     return result;
@@ -239,17 +241,17 @@ static parian_result straighten(const parian_env *env, chart_set *set, double an
 parian_result chart_set_merge(const parian_env *env, chart_set *set, double angle_deg)
 {
     merger m = {.env = env, .set = set};
-    double tiny = TINY_SHARE * set->area_total;
     parian_result result = PARIAN_E_NOMEM;
     if (PARIAN_NEW(env, m.regions, set->chart_count) &&
         PARIAN_NEW(env, m.next, set->triangle_count) &&
         PARIAN_NEW0(env, m.shared, set->chart_count) &&
         PARIAN_NEW(env, m.touched, set->chart_count)) {
         make_regions(&m);
-        /* The average of a union moves, so its limit is a little wider than that of growth. */
-        result = merge_pass(&m, fmin(1.1 * angle_deg, 75.0), 0.0);
-        for (double widen = 1.5; widen <= 2.0 && result == PARIAN_OK; widen += 0.5) {
-            result = merge_pass(&m, fmin(widen * angle_deg, 75.0), tiny);
+        result = merge_pass(&m, fmin(angle_deg, ANGLE_MAX_DEG), 0.0);
+        for (size_t i = 0; i < sizeof SMALL_CHARTS / sizeof *SMALL_CHARTS && result == PARIAN_OK;
+             i++) {
+            result = merge_pass(&m, fmin(SMALL_CHARTS[i].widening * angle_deg, ANGLE_MAX_DEG),
+                                SMALL_CHARTS[i].share * set->area_total);
         }
     }
     if (result == PARIAN_OK) {
@@ -263,5 +265,5 @@ parian_result chart_set_merge(const parian_env *env, chart_set *set, double angl
     parian_free(env, m.shared);
     parian_free(env, m.next);
     parian_free(env, m.regions);
-    return result == PARIAN_OK ? straighten(env, set, fmin(1.1 * angle_deg, 75.0)) : result;
+    return result == PARIAN_OK ? straighten(env, set, fmin(angle_deg, ANGLE_MAX_DEG)) : result;
 }
