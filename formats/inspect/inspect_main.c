@@ -21,22 +21,17 @@ typedef struct command_entry {
 
 static const command_entry commands[] = {
     {"info", "parian-info info", "ASSET... [--json]",
-     "Prints what an asset holds: bodies with their media, the mean free path against extent " and
-         texel size,
-     counts, bytes by part, estimated GPU memory, the plan,
-     provenance.",
-     NULL,
-     inspect_info, true, false, false, false},
+     "Prints what an asset holds: bodies with their media, the mean free path against extent and "
+     "texel size, counts, bytes by part, estimated GPU memory, the plan, provenance.",
+     NULL, inspect_info, true, false, false, false},
     {"chunks", "parian-info chunks", "ASSET... [--json]",
      "Lists the arrays of an asset: name, element, shape, codec, bytes.", NULL, inspect_chunks,
      true, false, false, false},
     {"validate", "parian-info validate", "ASSET... [--json]",
-     "Checks every byte of an asset against the rules of the format. A violation ends with "
-     "exit " status 3 and
-         one line that says which rule,
-     what was found and where.",
-     NULL,
-     inspect_validate, true, false, false, false},
+     "Checks every byte of an asset against the rules of the format. A violation ends with exit "
+     "status 3 and one "
+     "line that says which rule, what was found and where.",
+     NULL, inspect_validate, true, false, false, false},
     {"export", "parian-info export", "ASSET --chunk NAME -o FILE.npy|FILE.csv",
      "Writes one array of an asset to a file.",
      "Example:\n  parian-info export bunny.parian --chunk body0/texel.area -o area.npy",
