@@ -1,0 +1,107 @@
+/* texel_response.c - R_d between two texels, averaged over the source texel where that matters.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "core/texel_response.h"
+
+#include <math.h>
+
+#include "core/small_maths.h"
+
+enum { DISC_POINTS = 12 };
+
+void parian_texel_response_init(const parian_body *body, const parian_transport_model *model,
+                                parian_texel_response *response)
+{
+    double node[PARIAN_RESPONSE_POINTS], weight[PARIAN_RESPONSE_POINTS];
+    response->body = body;
+    response->model = model;
+    response->z2 = (float)(model->z_min * model->z_min);
+    parian_gauss_legendre(DISC_POINTS, response->node, response->weight);
+    parian_gauss_legendre(PARIAN_RESPONSE_POINTS, node, weight);
+    for (int k = 0; k < PARIAN_RESPONSE_POINTS; k++) {
+        response->offset[k] = (float)(node[k] - 0.5);
+        response->share[k] = (float)weight[k];
+    }
+}
+
+/* Mean over the disc of the texel's area: closed form, or radial quadrature where R_d is cut. */
+static void disc_mean(const parian_texel_response *response, uint32_t i, float value[3])
+{
+    const parian_transport_model *model = response->model;
+    double area = response->body->texel_area[i], radius = sqrt(area / PARIAN_PI), sum[3] = {0};
+    if (model->share == PARIAN_MODEL_FULL) {
+        for (int c = 0; c < 3; c++) {
+            value[c] = (float)(parian_dipole_disc_energy(&model->dipole[c], radius) / area);
+        }
+        return;
+    }
+    double z = model->z_min, top = asinh(radius / z);
+    for (int k = 0; k < DISC_POINTS; k++) {
+        double r = z * sinh(top * response->node[k]);
+        double gain =
+            response->weight[k] * top * z * cosh(top * response->node[k]) * 2 * PARIAN_PI * r;
+        float at[3];
+        parian_radial_eval(&model->value, (float)(r * r), at);
+        for (int c = 0; c < 3; c++) {
+            sum[c] += gain * at[c];
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        value[c] = (float)(sum[c] / area);
+    }
+}
+
+/* Two unit vectors across a unit normal. */
+static void tangents(const float n[3], float u[3], float v[3])
+{
+    float sign = n[2] < 0 ? -1.0f : 1.0f, a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
+    u[0] = 1 + sign * n[0] * n[0] * a, u[1] = sign * b, u[2] = -sign * n[0];
+    v[0] = b, v[1] = sign + n[1] * n[1] * a, v[2] = -n[1];
+}
+
+static void square_mean(const parian_texel_response *response, uint32_t i, uint32_t o,
+                        float value[3])
+{
+    const parian_body *body = response->body;
+    const float *x = body->texel_position[i], *n = body->texel_normal[i];
+    float side = sqrtf(body->texel_area[i]), u[3], v[3];
+    tangents(n, u, v);
+    value[0] = value[1] = value[2] = 0;
+    for (int j = 0; j < PARIAN_RESPONSE_POINTS * PARIAN_RESPONSE_POINTS; j++) {
+        int a = j % PARIAN_RESPONSE_POINTS, b = j / PARIAN_RESPONSE_POINTS;
+        float p[3], at[3];
+        for (int k = 0; k < 3; k++) {
+            p[k] = x[k] + side * (response->offset[a] * u[k] + response->offset[b] * v[k]);
+        }
+        parian_transport_model_eval(response->model, p, n, body->texel_position[o],
+                                    body->texel_normal[o], at);
+        for (int c = 0; c < 3; c++) {
+            value[c] += response->share[a] * response->share[b] * at[c];
+        }
+    }
+}
+
+void parian_texel_response_eval(const parian_texel_response *response, uint32_t i, uint32_t o,
+                                float value[3])
+{
+    const parian_body *body = response->body;
+    const parian_transport_model *model = response->model;
+    float area = body->texel_area[i];
+    float r2 = parian_distance2f(body->texel_position[i], body->texel_position[o]);
+    if (!body->paper_form && i == o && area > 0) {
+        disc_mean(response, i, value);
+    } else if (!body->paper_form && area > 0.25f * (r2 + response->z2)) {
+        square_mean(response, i, o, value);
+    } else {
+        float laplacian[3];
+        parian_transport_model_eval(model, body->texel_position[i], body->texel_normal[i],
+                                    body->texel_position[o], body->texel_normal[o], value);
+        if (!body->paper_form) {
+            parian_radial_eval(&model->laplacian, r2, laplacian);
+            for (int c = 0; c < 3; c++) {
+                value[c] = fmaxf(0, value[c] + area * (1.0f / 24) * laplacian[c]);
+            }
+        }
+    }
+}
