@@ -4,7 +4,23 @@
  */
 #include "view_app.h"
 
-#include <string.h>
+#include <math.h>
+
+/* Radiance of the default background for each W/m^2 of light; a white surface has 0.32. */
+static const double BACKGROUND_SHARE = 0.004, BACKGROUND_MAX = 1e6;
+
+static void choose_background(parian_view_app *app)
+{
+    const parian_view_options *o = app->options;
+    const bool linear = o->image && parian_view_path_ends(o->image, ".exr");
+    const double grey = linear ? 0
+                               : BACKGROUND_SHARE * parian_view_lights_brightness(
+                                                        &app->lights, app->extent.body_centre);
+    for (int c = 0; c < 3; c++) {
+        const double value = o->background[c] >= 0 ? o->background[c] : grey;
+        app->settings.background[c] = (float)fmin(value, BACKGROUND_MAX);
+    }
+}
 
 parian_result parian_view_app_open(parian_view_app *app)
 {
@@ -33,9 +49,7 @@ parian_result parian_view_app_open(parian_view_app *app)
     app->settings = (parian_settings){.view = (parian_view_mode)o->view,
                                       .no_specular = o->no_specular,
                                       .roughness = (float)o->roughness};
-    for (int c = 0; c < 3; c++) {
-        app->settings.background[c] = (float)o->background[c];
-    }
+    choose_background(app);
     return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "view_vector.h"
 
+static const double PI = 3.14159265358979323846;
 static const double KEY_IRRADIANCE = 3, BACK_IRRADIANCE = 2; /* W/m^2 at the centre of the bodies */
 static const double LIGHT_DISTANCE = 2.5;                    /* bounding radii */
 
@@ -54,6 +55,40 @@ parian_result parian_view_lights_default(const parian_env *env, const parian_sce
     return result;
 }
 
+double parian_view_lights_brightness(const parian_light_set *set, const double point[3])
+{
+    double sum = 0;
+    for (size_t i = 0; i < set->count; i++) {
+        const parian_light *light = &set->light[i];
+        const double grey =
+            ((double)light->color[0] + (double)light->color[1] + (double)light->color[2]) / 3;
+        double to_light[3], u[3], v[3], across[3];
+        for (int c = 0; c < 3; c++) {
+            to_light[c] = light->position[c] - point[c];
+            u[c] = 2 * (double)light->axis_u[c];
+            v[c] = 2 * (double)light->axis_v[c];
+        }
+        const double squared = vector_dot(to_light, to_light);
+        vector_cross(u, v, across);
+        switch (light->type) {
+        case PARIAN_LIGHT_POINT:
+        case PARIAN_LIGHT_SPOT:
+            sum += squared > 0 ? grey / squared : 0;
+            break;
+        case PARIAN_LIGHT_DIRECTIONAL:
+            sum += grey;
+            break;
+        case PARIAN_LIGHT_RECT:
+            sum += squared > 0 ? grey * vector_length(across) / squared : 0;
+            break;
+        case PARIAN_LIGHT_ENVIRONMENT:
+            sum += grey * PI;
+            break;
+        }
+    }
+    return sum;
+}
+
 static void turn_vector(float v[3], const double axis[3], double angle)
 {
     double turned[3] = {v[0], v[1], v[2]};
@@ -77,5 +112,5 @@ void parian_view_light_turn(parian_light *light, const double centre[3], const d
     turn_vector(light->up, axis, angle);
     turn_vector(light->axis_u, axis, angle);
     turn_vector(light->axis_v, axis, angle);
-    light->rotation_deg += (float)(angle * 180 / 3.14159265358979323846 * axis[1]);
+    light->rotation_deg += (float)(angle * 180 / PI * axis[1]);
 }

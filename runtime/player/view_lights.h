@@ -17,6 +17,10 @@ parian_result parian_view_lights_read(const parian_env *env, const parian_view_o
 parian_result parian_view_lights_default(const parian_env *env, const parian_scene_info *info,
                                          const parian_view_extent *extent, parian_light_set *set);
 
+/* The irradiance that lights give a surface facing each of them at a point, summed, as one grey
+ * number: a measure of how bright the scene is, W/m^2. */
+double parian_view_lights_brightness(const parian_light_set *set, const double point[3]);
+
 /* Turn a light about a point by a rotation of the world: unit axis, radians. */
 void parian_view_light_turn(parian_light *light, const double centre[3], const double axis[3],
                             double angle);

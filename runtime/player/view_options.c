@@ -47,7 +47,8 @@ static size_t fill_table(parian_view_options *o, parian_option table[OPTION_MAX]
          "(auto).",
          0, 0, NULL, NULL},
         {"--background", NULL, PARIAN_OPTION_STRING, &o->background_text, "R,G,B",
-         "Radiance behind everything (0.02,0.02,0.02).", 0, 0, NULL, NULL},
+         "Radiance behind everything (a dim grey in proportion to the lights; 0,0,0 for .exr).", 0,
+         0, NULL, NULL},
         {"--roughness", NULL, PARIAN_OPTION_NUMBER, &o->roughness, "X",
          "Roughness of the surface reflection, 0.05 to 1 (0.35).", 0.05, 1, NULL, NULL},
         {"--no-specular", NULL, PARIAN_OPTION_FLAG, &o->no_specular, NULL,
@@ -84,7 +85,7 @@ parian_result parian_view_options_parse(int argc, char **argv, parian_view_optio
     parian_option table[OPTION_MAX];
     parian_string_list positional = {.count = 0};
     *options = (parian_view_options){
-        .width = 960, .height = 720, .exposure_auto = true, .background = {0.02, 0.02, 0.02}};
+        .width = 960, .height = 720, .exposure_auto = true, .background = {-1, -1, -1}};
     const parian_command command = {
         .tool = "parian-view",
         .usage = "ASSET.parian [options]",

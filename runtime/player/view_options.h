@@ -30,8 +30,8 @@ typedef struct parian_view_options {
     uint32_t width, height;
     bool exposure_auto;
     double exposure_ev;
-    double roughness; /* 0: the renderer's default */
-    double background[3];
+    double roughness;     /* 0: the renderer's default */
+    double background[3]; /* negative: in proportion to the lights */
     /* As typed, until they are checked. */
     const char *size_text, *exposure_text, *background_text, *method_text;
 } parian_view_options;

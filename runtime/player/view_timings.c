@@ -5,6 +5,7 @@
 #include "view_timings.h"
 
 #include <cjson/cJSON.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,11 +113,16 @@ static void read_processor(char name[PROCESSOR_MAX])
     }
 }
 
+/* Tenths of a microsecond are more than clocks tell. */
+static bool add_ms(cJSON *object, const char *key, double ms)
+{
+    return cJSON_AddNumberToObject(object, key, round(ms * 1e4) / 1e4) != NULL;
+}
+
 static bool add_summary(cJSON *object, const summary *s)
 {
-    return cJSON_AddNumberToObject(object, "median_ms", s->median) &&
-           cJSON_AddNumberToObject(object, "minimum_ms", s->minimum) &&
-           cJSON_AddNumberToObject(object, "maximum_ms", s->maximum);
+    return add_ms(object, "median_ms", s->median) && add_ms(object, "minimum_ms", s->minimum) &&
+           add_ms(object, "maximum_ms", s->maximum);
 }
 
 static bool add_passes(cJSON *root, const parian_view_timings *timings)
@@ -155,9 +161,8 @@ static bool fill(cJSON *root, const parian_view_timings *timings, const parian_v
            cJSON_AddNumberToObject(root, "vertices", (double)app->info.vertex_count) &&
            cJSON_AddNumberToObject(root, "gpu_bytes",
                                    (double)parian_renderer_memory(app->renderer)) &&
-           cJSON_AddNumberToObject(root, "relight_ms", summarize(timings, 0).median) &&
-           cJSON_AddNumberToObject(root, "draw_ms", summarize(timings, 1).median) &&
-           add_passes(root, timings);
+           add_ms(root, "relight_ms", summarize(timings, 0).median) &&
+           add_ms(root, "draw_ms", summarize(timings, 1).median) && add_passes(root, timings);
 }
 
 parian_result parian_view_timings_write(const parian_view_timings *timings,
