@@ -33,6 +33,11 @@ void parian_transfer_parts_free(const parian_env *env, transfer_part *parts, uin
 parian_result parian_transfer_join(const parian_env *env, const transfer_part *parts,
                                    uint32_t count, parian_mesh *mesh);
 
+/* transfer_mesh_decimate.c: a mesh with about vertex_target of the source's vertices and its
+ * topology, by quadric errors. *mesh stays untouched where that would break the topology. */
+parian_result parian_transfer_decimate(const parian_env *env, const parian_mesh *source,
+                                       uint32_t vertex_target, parian_mesh *mesh);
+
 /* transfer_mesh_remesh.c: make part->result with about part->target near-equilateral vertices. */
 parian_result parian_transfer_remesh(const parian_env *env, const parian_closest *source,
                                      transfer_part *part);
@@ -48,6 +53,11 @@ parian_result parian_transfer_fit(const parian_env *env, const parian_closest *s
 /* transfer_mesh_measure.c: sample distances between part->result and part->source, both ways. */
 parian_result parian_transfer_measure(const parian_env *env, const parian_closest *source,
                                       uint32_t sample_count, transfer_part *part);
+
+/* transfer_mesh_curve.c: sort points, [count], along a Hilbert curve: order[i] is the i-th of them.
+ */
+parian_result parian_transfer_curve(const parian_env *env, uint32_t count, const double (*point)[3],
+                                    uint32_t *order);
 
 /* transfer_mesh_order.c: renumber the vertices along the surface, and sort the triangles by vertex.
  */

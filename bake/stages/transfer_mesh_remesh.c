@@ -8,6 +8,9 @@
 
 enum { ROUNDS_MIN = 3, ROUNDS_MAX = 12 };
 static const double count_tolerance = 0.015;
+/* A source with more than so many times the wanted vertices is decimated to so many times of them.
+ */
+static const double dense_from = 16.0, dense_to = 6.0;
 static const double crease_deg = 60.0;
 /* A crease shorter than this many edges of the transfer mesh is noise to it. */
 static const double feature_edges = 6.0;
@@ -97,13 +100,31 @@ static parian_result finish(const parian_env *env, const parian_closest *source,
     return result;
 }
 
-parian_result parian_transfer_remesh(const parian_env *env, const parian_closest *source,
-                                     transfer_part *part)
+/* What the rounds begin with: the source, or where that is much denser, a decimated copy. */
+static parian_result begin(const parian_env *env, const transfer_part *part,
+                           parian_remesher **remesher)
 {
     double edge = edge_for_target(part);
     parian_remesher_desc desc = {crease_deg, 0.5 * edge * edge, feature_edges * edge, edge};
+    parian_mesh thin = {0};
+    parian_result result = PARIAN_OK;
+    if (part->source.vertex_count > dense_from * part->target) {
+        uint32_t left = (uint32_t)(dense_to * part->target);
+        result = parian_transfer_decimate(env, &part->source, left, &thin);
+    }
+    if (result == PARIAN_OK) {
+        result = parian_remesher_create(env, thin.triangle_count ? &thin : &part->source, &desc,
+                                        remesher);
+    }
+    parian_mesh_free(env, &thin);
+    return result;
+}
+
+parian_result parian_transfer_remesh(const parian_env *env, const parian_closest *source,
+                                     transfer_part *part)
+{
     parian_remesher *remesher = NULL;
-    parian_result result = parian_remesher_create(env, &part->source, &desc, &remesher);
+    parian_result result = begin(env, part, &remesher);
     if (result == PARIAN_OK) {
         result = run_rounds(env, source, part, remesher);
     }
