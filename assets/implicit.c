@@ -1,4 +1,4 @@
-/* implicit.c - vectors, primitive solids, smooth set operations and noise.
+/* implicit.c - frames, primitive solids, smooth set operations and noise.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -8,60 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { TUBE_STEPS = 6 }; /* cones per span of a tube */
-static const double TUBE_FAR =
-    0.5; /* sizes of a tube from which on its distance is only estimated */
-
-vec3 v3(double x, double y, double z)
-{
-    return (vec3){x, y, z};
-}
-
-vec3 v3_add(vec3 a, vec3 b)
-{
-    return v3(a.x + b.x, a.y + b.y, a.z + b.z);
-}
-
-vec3 v3_sub(vec3 a, vec3 b)
-{
-    return v3(a.x - b.x, a.y - b.y, a.z - b.z);
-}
-
-vec3 v3_scale(vec3 a, double s)
-{
-    return v3(a.x * s, a.y * s, a.z * s);
-}
-
-vec3 v3_lerp(vec3 a, vec3 b, double t)
-{
-    return v3_add(a, v3_scale(v3_sub(b, a), t));
-}
-
-vec3 v3_cross(vec3 a, vec3 b)
-{
-    return v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-}
-
-double v3_dot(vec3 a, vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-double v3_length(vec3 a)
-{
-    return sqrt(v3_dot(a, a));
-}
-
-vec3 v3_normalize(vec3 a)
-{
-    double length = v3_length(a);
-    return length > 0 ? v3_scale(a, 1 / length) : v3(0, 0, 1);
-}
-
-vec3 v3_mirror(vec3 p)
-{
-    return v3(fabs(p.x), p.y, p.z);
-}
+enum { TUBE_STEPS = 6, TUBE_POINTS_MAX = 16 }; /* TUBE_STEPS: cones per span of a tube */
 
 frame frame_make(vec3 origin, vec3 z, vec3 up)
 {
@@ -77,11 +24,6 @@ vec3 frame_local(const frame *f, vec3 p)
 {
     vec3 d = v3_sub(p, f->origin);
     return v3(v3_dot(d, f->x), v3_dot(d, f->y), v3_dot(d, f->z));
-}
-
-double clamp01(double t)
-{
-    return t < 0 ? 0 : t > 1 ? 1 : t;
 }
 
 double smoothstep(double a, double b, double t)
@@ -128,12 +70,12 @@ double solid_cone(vec3 p, vec3 a, vec3 b, double radius_a, double radius_b)
 double solid_torus(vec3 p, vec3 center, double ring_radius, double radius)
 {
     vec3 d = v3_sub(p, center);
-    return hypot(hypot(d.x, d.z) - ring_radius, d.y) - radius;
+    return length2(length2(d.x, d.z) - ring_radius, d.y) - radius;
 }
 
 double solid_plate(double outline, double across, double h)
 {
-    return hypot(fmax(outline + h, 0), across) - h;
+    return length2(fmax(outline + h, 0), across) - h;
 }
 
 double solid_join(double a, double b, double k)
@@ -152,51 +94,77 @@ double solid_cut(double a, double b, double k)
     return solid_meet(a, -b, k);
 }
 
-static vec3 curve_point(const vec3 *point, int count, int span, double t)
+/* A span of a Catmull-Rom curve: its end points and their neighbours. */
+typedef struct span_points {
+    vec3 p0, p1, p2, p3;
+} span_points;
+
+static span_points span_at(const vec3 *point, int count, int span)
 {
-    vec3 p1 = point[span], p2 = point[span + 1];
-    vec3 p0 = span > 0 ? point[span - 1] : v3_sub(v3_scale(p1, 2), p2);
-    vec3 p3 = span + 2 < count ? point[span + 2] : v3_sub(v3_scale(p2, 2), p1);
+    span_points s = {.p1 = point[span], .p2 = point[span + 1]};
+    s.p0 = span > 0 ? point[span - 1] : v3_sub(v3_scale(s.p1, 2), s.p2);
+    s.p3 = span + 2 < count ? point[span + 2] : v3_sub(v3_scale(s.p2, 2), s.p1);
+    return s;
+}
+
+static vec3 span_point(const span_points *s, double t)
+{
     double t2 = t * t, t3 = t2 * t;
-    vec3 sum = v3_scale(p0, -0.5 * t3 + t2 - 0.5 * t);
-    sum = v3_add(sum, v3_scale(p1, 1.5 * t3 - 2.5 * t2 + 1));
-    sum = v3_add(sum, v3_scale(p2, -1.5 * t3 + 2 * t2 + 0.5 * t));
-    return v3_add(sum, v3_scale(p3, 0.5 * t3 - 0.5 * t2));
+    vec3 sum = v3_scale(s->p0, -0.5 * t3 + t2 - 0.5 * t);
+    sum = v3_add(sum, v3_scale(s->p1, 1.5 * t3 - 2.5 * t2 + 1));
+    sum = v3_add(sum, v3_scale(s->p2, -1.5 * t3 + 2 * t2 + 0.5 * t));
+    return v3_add(sum, v3_scale(s->p3, 0.5 * t3 - 0.5 * t2));
+}
+
+/* No point of the span is nearer to p: its Bezier control points lie in a ball about its middle. */
+static double span_distance_min(const span_points *s, vec3 p)
+{
+    double ends = 0.5 * v3_length(v3_sub(s->p2, s->p1));
+    double handle = fmax(v3_length(v3_sub(s->p2, s->p0)), v3_length(v3_sub(s->p3, s->p1))) / 6;
+    return v3_length(v3_sub(p, v3_lerp(s->p1, s->p2, 0.5))) - ends - handle;
+}
+
+/* The cones of a span; lowers *best and sets *along where one of them is nearer. */
+static void span_distance(const span_points *s, vec3 p, double radius_1, double radius_2,
+                          double start, double *best, double *along)
+{
+    vec3 a = s->p1;
+    double radius_a = radius_1;
+    for (int i = 1; i <= TUBE_STEPS; i++) {
+        double t = (double)i / TUBE_STEPS;
+        vec3 b = span_point(s, t);
+        double radius_b = radius_1 + (radius_2 - radius_1) * t;
+        double d = solid_cone(p, a, b, radius_a, radius_b);
+        if (d < *best) {
+            vec3 axis = v3_sub(b, a);
+            *best = d;
+            *along = start + (i - 1 + clamp01(v3_dot(v3_sub(p, a), axis) / v3_dot(axis, axis))) /
+                                 TUBE_STEPS;
+        }
+        a = b;
+        radius_a = radius_b;
+    }
 }
 
 double solid_tube(vec3 p, const vec3 *point, const double *radius, int count, double *along)
 {
-    vec3 middle = {0, 0, 0};
-    double reach = 0, best = INFINITY;
-    for (int i = 0; i < count; i++) {
-        middle = v3_add(middle, v3_scale(point[i], 1.0 / count));
+    double bound[TUBE_POINTS_MAX], best = INFINITY, where = 0;
+    int nearest = 0;
+    for (int i = 0; i + 1 < count; i++) {
+        const span_points s = span_at(point, count, i);
+        bound[i] = span_distance_min(&s, p) - fmax(radius[i], radius[i + 1]);
+        nearest = bound[i] < bound[nearest] ? i : nearest;
     }
-    for (int i = 0; i < count; i++) {
-        reach = fmax(reach, v3_length(v3_sub(point[i], middle)) + radius[i]);
-    }
-    double away = v3_length(v3_sub(p, middle)) - 1.1 * reach;
-    if (away > TUBE_FAR * reach) {
-        return away;
-    }
-    for (int span = 0; span + 1 < count; span++) {
-        vec3 a = point[span];
-        double radius_a = radius[span];
-        for (int i = 1; i <= TUBE_STEPS; i++) {
-            double t = (double)i / TUBE_STEPS;
-            vec3 b = curve_point(point, count, span, t);
-            double radius_b = radius[span] + (radius[span + 1] - radius[span]) * t;
-            double d = solid_cone(p, a, b, radius_a, radius_b);
-            if (d < best) {
-                best = d;
-                if (along) {
-                    vec3 axis = v3_sub(b, a);
-                    double s = clamp01(v3_dot(v3_sub(p, a), axis) / v3_dot(axis, axis));
-                    *along = span + (i - 1 + s) / TUBE_STEPS;
-                }
-            }
-            a = b;
-            radius_a = radius_b;
+    for (int k = 0; k + 1 < count;
+         k++) { /* the nearest span first: most others then cannot be nearer */
+        int i = k == 0 ? nearest : k <= nearest ? k - 1 : k;
+        if (bound[i] < best) {
+            const span_points s = span_at(point, count, i);
+            span_distance(&s, p, radius[i], radius[i + 1], i, &best, &where);
         }
+    }
+    if (along) {
+        *along = where;
     }
     return best;
 }

@@ -5,9 +5,7 @@
 #ifndef PARIAN_ASSETS_IMPLICIT_H
 #define PARIAN_ASSETS_IMPLICIT_H
 
-typedef struct vec3 {
-    double x, y, z;
-} vec3;
+#include "model_vec.h"
 
 /* A field grows by at most about 1 per unit of length, so that |value| bounds the distance from
  * below. */
@@ -18,23 +16,10 @@ typedef struct frame {
     vec3 origin, x, y, z;
 } frame;
 
-vec3 v3(double x, double y, double z);
-vec3 v3_add(vec3 a, vec3 b);
-vec3 v3_sub(vec3 a, vec3 b);
-vec3 v3_scale(vec3 a, double s);
-vec3 v3_lerp(vec3 a, vec3 b, double t);
-vec3 v3_cross(vec3 a, vec3 b);
-vec3 v3_normalize(vec3 a);
-double v3_dot(vec3 a, vec3 b);
-double v3_length(vec3 a);
-/* p with x made positive: solids that are alike left and right. */
-vec3 v3_mirror(vec3 p);
-
 /* The frame at origin whose z is `z` and whose y is as near to `up` as can be. */
 frame frame_make(vec3 origin, vec3 z, vec3 up);
 vec3 frame_local(const frame *f, vec3 p);
 
-double clamp01(double t);
 /* 0 below a, 1 above b, smooth between; also for a > b. */
 double smoothstep(double a, double b, double t);
 
@@ -54,9 +39,9 @@ double solid_join(double a, double b, double k);
 double solid_meet(double a, double b, double k);
 double solid_cut(double a, double b, double k);
 
-/* A chain of spheres along the Catmull-Rom curve through `count` points with radii `radius`.
- * Returns the field; *along (may be NULL) is the curve parameter of the nearest part, 0 at the
- * first point and count - 1 at the last. */
+/* A chain of spheres along the Catmull-Rom curve through `count` (2 to 16) points with radii
+ * `radius`. Returns the field; *along (may be NULL) is the curve parameter of the nearest part, 0
+ * at the first point and count - 1 at the last. */
 double solid_tube(vec3 p, const vec3 *point, const double *radius, int count, double *along);
 
 /* Smooth noise in about [-1, 1], features of size 1; the same everywhere. */

@@ -26,10 +26,15 @@ static double side_relief(vec3 p)
     return 0.25 * noise3(v3(0.16 * p.x, 0.05 * p.y, 0.16 * p.z)) + 0.04 * noise3(v3_scale(p, 0.7));
 }
 
-/* A run of wax from the rim down the side, thicker at its end. */
-static double drip_solid(vec3 p, const drip *d)
+/* A run of wax from the rim down the side, thicker at its end. `angle` is that of p about the axis.
+ */
+static double drip_solid(vec3 p, double angle, const drip *d)
 {
-    double a = d->angle_deg * M_PI / 180, s = sin(a), c = cos(a);
+    double a = d->angle_deg * M_PI / 180;
+    if (fabs(remainder(angle - a, 2 * M_PI)) > 0.7) {
+        return 4; /* at least that far away, on the side of the candle or near it */
+    }
+    double s = sin(a), c = cos(a);
     double wander = 0.05 * d->length;
     const vec3 point[] = {
         {s * (RADIUS - 2.6), TOP - 6.2, c * (RADIUS - 2.6)},
@@ -47,13 +52,13 @@ static double candle_field(vec3 p)
     static const drip drips[] = {{8, 30, 2.0},   {31, 13, 1.7},   {-38, 46, 2.1},
                                  {-63, 19, 1.6}, {74, 38, 1.9},   {118, 22, 2.0},
                                  {166, 52, 2.2}, {-118, 33, 1.8}, {-150, 14, 1.6}};
-    double across = hypot(p.x, p.z), angle = atan2(p.x, p.z);
+    double across = length2(p.x, p.z), angle = atan2(p.x, p.z);
     double side = across - RADIUS - side_relief(p);
     double rim = TOP - 2 + 1.2 * cos(angle - 0.4) + 0.7 * cos(3 * angle + 1);
     double solid = solid_meet(side, p.y - rim, 4);
     solid = solid_meet(solid, -p.y, 1.5);
     for (unsigned i = 0; i < sizeof drips / sizeof drips[0]; i++) {
-        solid = solid_join(solid, drip_solid(p, &drips[i]), 1.6);
+        solid = solid_join(solid, drip_solid(p, angle, &drips[i]), 1.6);
     }
     return 0.9 * solid_cut(solid, solid_ellipsoid(p, v3(0, TOP + 1.5, 0), v3(13, 8.5, 13)), 3);
 }

@@ -46,12 +46,12 @@ static double handle_solid(vec3 p)
 
 static double cup_field(vec3 p)
 {
-    double r = hypot(p.x, p.z);
+    double r = length2(p.x, p.z);
     double wall = profile_distance(r, p.y);
     if (wall < 3) {
         wall -= flutes(wall, atan2(p.x, p.z), r, p.y);
     }
-    double foot = hypot(fmax(fabs(r - 15.6) - 0.3, 0), fmax(fabs(p.y - 2.2) - 1.2, 0)) - 1.0;
+    double foot = length2(fmax(fabs(r - 15.6) - 0.3, 0), fmax(fabs(p.y - 2.2) - 1.2, 0)) - 1.0;
     double solid = solid_join(wall, foot, 2.5);
     double handle = solid_cut(handle_solid(p), r - 27, 1); /* nothing of it inside */
     solid = solid_join(solid, handle, 2.6);

@@ -83,8 +83,8 @@ static double ear_solid(vec3 m)
 {
     const frame f = frame_make(v3(7.6, 35.5, 10.5), v3(0.42, 0.06, 1), v3(0, 1, 0));
     vec3 q = frame_local(&f, m);
-    double outline = hypot(q.x - 8.4, (q.y - 1.2) * 0.96) - 9.4;
-    outline = solid_join(outline, hypot(q.x - 5.6, q.y + 7.2) - 5.2, 7);
+    double outline = length2(q.x - 8.4, (q.y - 1.2) * 0.96) - 9.4;
+    outline = solid_join(outline, length2(q.x - 5.6, q.y + 7.2) - 5.2, 7);
     outline += 0.35 * cos(0.9 * q.y + 0.4) * smoothstep(8, 15, q.x);
     double root = smoothstep(11, -1, q.x);
     double veins =

@@ -70,7 +70,7 @@ static double rib_solid(vec3 p)
     double t = p.z / LENGTH + 0.5;
     double radius = 1.05 - 0.8 * clamp01(t);
     double end = fmax(-LENGTH / 2 - 9 - p.z, p.z - LENGTH / 2 + 2);
-    return solid_meet(hypot(q.x, q.y + 0.45) - radius, end, 0.8);
+    return solid_meet(length2(q.x, q.y + 0.45) - radius, end, 0.8);
 }
 
 static double leaf_field(vec3 p)

@@ -7,7 +7,7 @@
 
 #include <stdint.h>
 
-#include "implicit.h"
+#include "model_vec.h"
 #include "parian/env.h"
 #include "parian/result.h"
 

@@ -6,6 +6,7 @@
 #define PARIAN_ASSETS_MODELS_H
 
 #include "glb_write.h"
+#include "implicit.h"
 
 /* Fill a zeroed scene, in metres, y up, front towards +z. On failure what was made stays for
  * glb_scene_free. triangle_count is that of the body. */

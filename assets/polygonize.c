@@ -262,16 +262,15 @@ static parian_result fit_grid(const parian_env *env, grid *g, vec3 lower, vec3 u
                               uint32_t triangle_count)
 {
     vec3 d = v3_sub(upper, lower);
-    double cell = sqrt(2 * (d.x * d.y + d.y * d.z + d.z * d.x) / triangle_count);
+    double cell = 2 * sqrt(2 * (d.x * d.y + d.y * d.z + d.z * d.x) / triangle_count);
     for (int step = 0;; step++) {
         parian_result result = sample_grid(env, g, lower, upper, cell);
         if (result != PARIAN_OK) {
             return result;
         }
         make_unambiguous(g);
-        double count = 2.0 * make_quads(g, NULL);
-        double ratio = count / triangle_count;
-        if (step + 1 == CALIBRATE_STEPS || fabs(ratio - 1) < 0.02) {
+        double ratio = 2.0 * make_quads(g, NULL) / triangle_count;
+        if (step + 1 == CALIBRATE_STEPS || fabs(ratio - 1) < 0.03) {
             return PARIAN_OK;
         }
         cell *= ratio > 0 ? fmin(fmax(sqrt(ratio), 0.25), 4) : 0.25;
