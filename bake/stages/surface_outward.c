@@ -8,9 +8,10 @@
 #include "bake/stages/surface_steps.h"
 #include "core/memory.h"
 
-/* An open component counts as inside out from this share of the volume that a sphere of its area
- * holds on; a sheet holds none. */
-static const double open_volume_min = 0.1;
+/* An open component counts as inside out if it is nearly closed (the mean of its normals is short:
+ * 0 for a closed surface, 1 for a flat sheet) and holds this share of the volume of a sphere of its
+ * area, negative. */
+static const double open_volume_min = 0.1, open_mean_normal_max = 0.25;
 
 /* Tests of a point against all triangles are skipped where they would take seconds. */
 static const double solid_angle_budget = 3e8;
@@ -20,8 +21,9 @@ static const double pi = 3.14159265358979323846;
 typedef struct component {
     uint32_t first, count; /* triangles: in the order of `outward.order` */
     uint32_t boundary_edges;
-    double volume,
-        area; /* volume about the component's first vertex if closed, else about its centroid */
+    double area;
+    double volume;      /* about the centroid */
+    double mean_normal; /* its length */
     bool turn;
 } component;
 
@@ -81,7 +83,7 @@ static void corners_from(const parian_mesh *mesh, uint32_t t, const double origi
 
 static void measure(outward *out, component *c)
 {
-    double centroid[3] = {0, 0, 0}, corner[3][3];
+    double centroid[3] = {0, 0, 0}, normal[3] = {0, 0, 0}, corner[3][3];
     for (uint32_t i = 0; i < c->count; i++) {
         uint32_t t = out->order[c->first + i];
         double area = 0.5 * surface_doubled_area(out->mesh, t);
@@ -98,7 +100,14 @@ static void measure(outward *out, component *c)
     for (uint32_t i = 0; i < c->count; i++) {
         corners_from(out->mesh, out->order[c->first + i], centroid, corner);
         c->volume += determinant(corner[0], corner[1], corner[2]) / 6;
+        for (int k = 0; k < 3; k++) {
+            int u = (k + 1) % 3, v = (k + 2) % 3;
+            normal[k] += 0.5 * ((corner[1][u] - corner[0][u]) * (corner[2][v] - corner[0][v]) -
+                                (corner[1][v] - corner[0][v]) * (corner[2][u] - corner[0][u]));
+        }
     }
+    double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    c->mean_normal = c->area > 0 ? length / c->area : 1;
 }
 
 /* How often the other closed components wind round a point. Source: [VanOosterom83] for the solid
@@ -162,7 +171,8 @@ static void decide_open(outward *out)
         component *c = &out->components[k];
         double sphere = c->area * sqrt(c->area / pi) / 6;
         if (c->boundary_edges > 0) {
-            c->turn = c->volume < -open_volume_min * sphere;
+            c->turn =
+                c->mean_normal < open_mean_normal_max && c->volume < -open_volume_min * sphere;
         }
     }
 }
