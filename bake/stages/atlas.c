@@ -15,11 +15,11 @@ enum {
     SIDE_MIN = 16,
     SIDE_MAX = 8192,
     PACK_SIDE = 512, /* packing grids have about this many cells a side, whatever the atlas has */
-    SCALE_STEPS = 7,
+    SCALE_STEPS = 8,
     RELAXATION_ROUNDS = 3
 };
 static const double MERGE_WIDENING = 1.25, RELAX_WIDENING = 1.15; /* of the chart angle */
-static const double OCCUPANCY_MOST = 0.93;                        /* tried first */
+static const double OCCUPANCY_MOST = 1.0;                         /* tried first */
 static const double OCCUPANCY_LEAST = 0.50;  /* below it the search walks down by halves */
 static const double MEAN_CHART_TEXELS = 2.0; /* below it an atlas carries nothing but gutters */
 
