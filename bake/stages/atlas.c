@@ -19,8 +19,8 @@ enum {
     RELAXATION_ROUNDS = 3
 };
 static const double MERGE_WIDENING = 1.25, RELAX_WIDENING = 1.15; /* of the chart angle */
-static const double OCCUPANCY_MOST = 1.0;                         /* tried first */
-static const double OCCUPANCY_LEAST = 0.50;  /* below it the search walks down by halves */
+static const double OCCUPANCY_MOST = 1.0;                         /* a square chart comes near it */
+static const double OCCUPANCY_LEAST = 0.50;  /* tried first; where it fails, ever less */
 static const double MEAN_CHART_TEXELS = 2.0; /* below it an atlas carries nothing but gutters */
 
 typedef struct atlas_job {

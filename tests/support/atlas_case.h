@@ -1,4 +1,5 @@
-/* atlas_case.h - makes a body's transfer surface from a generated mesh, for the tests of atlas and texels.
+/* atlas_case.h - makes a body's transfer surface from a generated mesh, for the tests of atlas and
+ * texels.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -10,8 +11,10 @@
 #include "core/body.h"
 #include "core/memory.h"
 
-/* Copy positions and triangles into a zeroed body, with corner normals that are smooth below 40 degrees. */
-static inline parian_result atlas_case_body(const parian_env *env, parian_mesh *mesh, parian_body *body)
+/* Copy positions and triangles into a zeroed body, with corner normals that are smooth below 40
+ * degrees. */
+static inline parian_result atlas_case_body(const parian_env *env, parian_mesh *mesh,
+                                            parian_body *body)
 {
     memset(body, 0, sizeof *body);
     parian_result result = parian_mesh_make_corner_normals(env, mesh, 40.0);
