@@ -11,7 +11,13 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { THREADS_MAX = 1024, STACK_SIZE = 8 << 20, PIECES_PER_THREAD = 32, GRAIN_MAX = 256 };
+/* Threads beyond the cores only cost address space, which runs under a limit would miss. */
+enum {
+    THREADS_BEYOND_CORES_MAX = 64,
+    STACK_SIZE = 2 << 20,
+    PIECES_PER_THREAD = 32,
+    GRAIN_MAX = 256
+};
 
 struct parian_thread_pool {
     unsigned size; /* workers and the caller */
@@ -102,8 +108,11 @@ parian_result parian_thread_pool_create(unsigned threads, parian_thread_pool **o
     if (!pool) {
         return PARIAN_E_NOMEM;
     }
-    threads = threads ? threads : core_count();
-    threads = threads < THREADS_MAX ? threads : THREADS_MAX;
+    const unsigned cores = core_count();
+    const unsigned threads_max =
+        cores > THREADS_BEYOND_CORES_MAX ? cores : THREADS_BEYOND_CORES_MAX;
+    threads = threads ? threads : cores;
+    threads = threads < threads_max ? threads : threads_max;
     pool->worker = calloc(threads, sizeof *pool->worker);
     if (!pool->worker) {
         free(pool);
