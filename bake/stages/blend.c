@@ -200,7 +200,7 @@ static void blend_texel(blend_job *job, blend_work *work, uint32_t i, double *er
     }
     bool fit = system.count >= RING_MIN;
     if (body->paper_form) {
-        parian_blend_solve_free(&system, q);
+        parian_blend_solve_free(&system, fit, q);
     } else {
         parian_blend_solve(&system, fit, q);
     }

@@ -143,12 +143,12 @@ void parian_blend_solve(const parian_blend_system *system, bool fit, double q[3]
     }
 }
 
-void parian_blend_solve_free(const parian_blend_system *system, double q[3][3])
+void parian_blend_solve_free(const parian_blend_system *system, bool fit, double q[3][3])
 {
     double matrix[3][3], inverse[3][3];
-    regularised(system, 1e-9, matrix);
+    regularised(system, 1e-6, matrix);
     memset(q, 0, 9 * sizeof **q);
-    if (system->count == 0 || !invert(matrix, inverse)) {
+    if (!fit || !invert(matrix, inverse)) {
         return;
     }
     for (int k = 0; k < 3; k++) {

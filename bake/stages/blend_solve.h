@@ -29,7 +29,7 @@ void parian_blend_add(parian_blend_system *system, const float psi[3], const flo
  * window. */
 void parian_blend_solve(const parian_blend_system *system, bool fit, double q[3][3]);
 
-/* The paper's: least squares without constraint. */
-void parian_blend_solve_free(const parian_blend_system *system, double q[3][3]);
+/* The paper's: least squares without constraint; zero without fit. */
+void parian_blend_solve_free(const parian_blend_system *system, bool fit, double q[3][3]);
 
 #endif
