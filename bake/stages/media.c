@@ -75,7 +75,7 @@ static parian_result find_extinction(const parian_env *env, const parian_source_
 static double single_albedo(double r, double g, bool with_anisotropy)
 {
     double s = 4.09712 + 4.20863 * r - sqrt(9.59217 + 41.6808 * r + 17.7126 * r * r);
-    s = s < 0 ? 0 : s > 1 ? 1 : s;
+    s = s < 0 ? 0 : s > 1 || r == 0 ? 1 : s; /* the fit misses 1 by 3e-6 at r = 0 */
     return (1 - s * s) / (with_anisotropy ? 1 - g * s * s : 1);
 }
 
