@@ -12,8 +12,8 @@
 typedef struct parian_thread_pool parian_thread_pool;
 
 /* threads: how many work at once, the calling thread included; 0 takes one for each core that this
- * process may use. At most 64, or the cores if
- * they are more, are made, and fewer when the system refuses. Errors: PARIAN_E_NOMEM. */
+ * process may use. At most 64, or the cores if they are more, are made, and fewer when the system
+ * refuses. Errors: PARIAN_E_NOMEM. */
 parian_result parian_thread_pool_create(unsigned threads, parian_thread_pool **pool);
 /* Ends and joins the threads; NULL is fine. */
 void parian_thread_pool_destroy(parian_thread_pool *pool);
