@@ -93,26 +93,29 @@ static void undelta_shuffle(size_t width, const uint8_t *planes, size_t count, u
 /* ---- coders
  * -------------------------------------------------------------------------------------- */
 
-static parian_result finish_create(const parian_env *env, parian_block_coder *coder)
+static parian_result finish_create(const parian_env *env, size_t size_max,
+                                   parian_block_coder *coder)
 {
-    coder->transformed = coder->context ? parian_alloc(env, 1, PARIAN_BLOCK_SIZE) : NULL;
+    coder->transformed = coder->context ? parian_alloc(env, 1, size_max) : NULL;
     return coder->transformed ? PARIAN_OK : PARIAN_E_NOMEM;
 }
 
-parian_result parian_block_encoder_create(const parian_env *env, parian_block_coder *coder)
+parian_result parian_block_encoder_create(const parian_env *env, size_t size_max,
+                                          parian_block_coder *coder)
 {
     coder->context = ZSTD_createCCtx();
-    parian_result result = finish_create(env, coder);
+    parian_result result = finish_create(env, size_max, coder);
     if (result != PARIAN_OK) {
         parian_block_encoder_destroy(env, coder);
     }
     return result;
 }
 
-parian_result parian_block_decoder_create(const parian_env *env, parian_block_coder *coder)
+parian_result parian_block_decoder_create(const parian_env *env, size_t size_max,
+                                          parian_block_coder *coder)
 {
     coder->context = ZSTD_createDCtx();
-    parian_result result = finish_create(env, coder);
+    parian_result result = finish_create(env, size_max, coder);
     if (result != PARIAN_OK) {
         parian_block_decoder_destroy(env, coder);
     }

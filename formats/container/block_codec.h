@@ -13,8 +13,11 @@ typedef struct parian_block_coder {
     uint8_t *transformed;
 } parian_block_coder;
 
-parian_result parian_block_encoder_create(const parian_env *env, parian_block_coder *coder);
-parian_result parian_block_decoder_create(const parian_env *env, parian_block_coder *coder);
+/* size_max: bytes of the largest block that it will meet. Errors: PARIAN_E_NOMEM. */
+parian_result parian_block_encoder_create(const parian_env *env, size_t size_max,
+                                          parian_block_coder *coder);
+parian_result parian_block_decoder_create(const parian_env *env, size_t size_max,
+                                          parian_block_coder *coder);
 void parian_block_encoder_destroy(const parian_env *env, parian_block_coder *coder);
 void parian_block_decoder_destroy(const parian_env *env, parian_block_coder *coder);
 

@@ -209,15 +209,16 @@ static void read_lane(void *context, size_t index)
 
 static parian_result create_lanes(const parian_env *env, read_job *job)
 {
+    size_t size = job->info->size < PARIAN_BLOCK_SIZE ? (size_t)job->info->size : PARIAN_BLOCK_SIZE;
     job->lane_count = job->block_count < LANE_MAX ? (size_t)job->block_count : LANE_MAX;
     if (job->info->codec == PARIAN_CODEC_RAW) {
         return PARIAN_OK;
     }
     for (size_t i = 0; i < job->lane_count; i++) {
-        if (parian_block_decoder_create(env, &job->lanes[i].coder) != PARIAN_OK) {
+        if (parian_block_decoder_create(env, size, &job->lanes[i].coder) != PARIAN_OK) {
             return PARIAN_E_NOMEM;
         }
-        if (!job->destination && !PARIAN_NEW(env, job->lanes[i].decoded, PARIAN_BLOCK_SIZE)) {
+        if (!job->destination && !PARIAN_NEW(env, job->lanes[i].decoded, size)) {
             return PARIAN_E_NOMEM;
         }
     }

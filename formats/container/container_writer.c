@@ -171,7 +171,7 @@ static void code_lane(void *context, size_t index)
 static parian_result prepare_lane(parian_writer *writer, lane *mine)
 {
     if (!mine->coder.context &&
-        parian_block_encoder_create(&writer->env, &mine->coder) != PARIAN_OK) {
+        parian_block_encoder_create(&writer->env, PARIAN_BLOCK_SIZE, &mine->coder) != PARIAN_OK) {
         return PARIAN_E_NOMEM;
     }
     if (!mine->coded && !PARIAN_NEW(&writer->env, mine->coded, PARIAN_BLOCK_SIZE)) {
