@@ -1,4 +1,5 @@
-/* renderer.c - one scene with lights and settings; decides what must be recomputed and asks its backend.
+/* renderer.c - one scene with lights and settings; decides what must be recomputed and asks its
+ * backend.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -16,8 +17,8 @@ enum { DRAW_SIDE_MAX = 16384, SHADOW_SIZE_DEFAULT = 2048, SHADOW_SIZE_MAX = 8192
 /* Memory that all shadow maps of a renderer may take: 16 maps of 2048 x 2048. */
 static const uint64_t shadow_memory_max = 256u << 20;
 
-static const char *const pass_names[PARIAN_PASS_COUNT] = {"shadow", "irradiance", "restrict", "product",
-                                                          "filter", "gutter",     "shade",    "tone"};
+static const char *const pass_names[PARIAN_PASS_COUNT] = {
+    "shadow", "irradiance", "restrict", "product", "filter", "gutter", "shade", "tone"};
 
 uint32_t parian_body_register_count(const parian_body *body)
 {
@@ -49,7 +50,7 @@ float parian_renderer_shadow_lift(const parian_renderer *renderer)
 {
     float diagonal[3];
     vec3_sub(diagonal, renderer->scene->info.body_upper, renderer->scene->info.body_lower);
-    return 1e-3f * vec3_length(diagonal);
+    return 2e-3f * vec3_length(diagonal);
 }
 
 static double seconds_now(void)
@@ -77,10 +78,12 @@ static parian_result check_scene(const parian_env *env, const parian_scene *scen
     for (uint32_t b = 0; b < scene->data.body_count; b++) {
         const parian_body *body = &scene->data.bodies[b];
         if (!body->texel_at || !body->texel_position || !body->texel_border) {
-            return parian_fail(env, PARIAN_E_ARGUMENT, "body %u: its derived arrays are missing", b);
+            return parian_fail(env, PARIAN_E_ARGUMENT, "body %u: its derived arrays are missing",
+                               b);
         }
         if (parian_body_register_count(body) > 2 * PARIAN_MAX_OPERATORS) {
-            return parian_fail(env, PARIAN_E_UNSUPPORTED, "body %u: operators use more than %d registers", b,
+            return parian_fail(env, PARIAN_E_UNSUPPORTED,
+                               "body %u: operators use more than %d registers", b,
                                2 * PARIAN_MAX_OPERATORS);
         }
     }
@@ -91,7 +94,8 @@ static parian_result prepare(parian_renderer *renderer)
 {
     const parian_scene_data *data = &renderer->scene->data;
     if (!PARIAN_NEW(&renderer->env, renderer->optics, data->body_count)) {
-        return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for %u bodies", data->body_count);
+        return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for %u bodies",
+                           data->body_count);
     }
     for (uint32_t b = 0; b < data->body_count; b++) {
         renderer->optics[b] =
@@ -110,9 +114,10 @@ parian_result parian_renderer_create(const parian_env *env, const parian_scene *
     parian_renderer *made;
     if (!scene || !desc || !renderer || (unsigned)desc->backend > PARIAN_BACKEND_CPU ||
         desc->shadow_size > SHADOW_SIZE_MAX) {
-        return parian_fail(env, PARIAN_E_ARGUMENT,
-                           "a renderer needs a scene, a known backend and shadow maps of at most %d texels",
-                           SHADOW_SIZE_MAX);
+        return parian_fail(
+            env, PARIAN_E_ARGUMENT,
+            "a renderer needs a scene, a known backend and shadow maps of at most %d texels",
+            SHADOW_SIZE_MAX);
     }
     parian_result result = check_scene(env, scene);
     if (result != PARIAN_OK) {
@@ -160,7 +165,8 @@ uint64_t parian_renderer_memory(const parian_renderer *renderer)
     return renderer->backend->memory(renderer);
 }
 
-/* The ball around the middle of the bodies' box that holds all their vertices, or around everything. */
+/* The ball around the middle of the bodies' box that holds all their vertices, or around
+ * everything. */
 static parian_ball find_ball(const parian_scene *scene, bool everything)
 {
     const parian_scene_info *info = &scene->info;
@@ -191,12 +197,15 @@ static parian_result fit_shadows(parian_renderer *renderer, parian_light_list *l
 {
     const parian_scene *scene = renderer->scene;
     parian_ball bodies = find_ball(scene, false), everything = find_ball(scene, true);
-    bool surrounded = scene->data.surrounding_count > 0 && everything.radius > 1.05f * bodies.radius;
-    return parian_shadow_fit(&renderer->env, list, renderer->desc.shadow_size, shadow_memory_max, &bodies,
-                             &everything, surrounded, scene->info.lower, scene->info.upper);
+    bool surrounded =
+        scene->data.surrounding_count > 0 && everything.radius > 1.05f * bodies.radius;
+    return parian_shadow_fit(&renderer->env, list, renderer->desc.shadow_size, shadow_memory_max,
+                             &bodies, &everything, surrounded, scene->info.lower,
+                             scene->info.upper);
 }
 
-parian_result parian_renderer_set_lights(parian_renderer *renderer, const parian_light *lights, size_t count)
+parian_result parian_renderer_set_lights(parian_renderer *renderer, const parian_light *lights,
+                                         size_t count)
 {
     parian_light_list list;
     if (!renderer || (count > 0 && !lights)) {
@@ -217,7 +226,8 @@ parian_result parian_renderer_set_lights(parian_renderer *renderer, const parian
     return PARIAN_OK;
 }
 
-parian_result parian_renderer_set_settings(parian_renderer *renderer, const parian_settings *settings)
+parian_result parian_renderer_set_settings(parian_renderer *renderer,
+                                           const parian_settings *settings)
 {
     if (!renderer || !settings || (unsigned)settings->view > PARIAN_VIEW_CHARTS ||
         !(settings->roughness >= 0.0f && settings->roughness <= 1.0f)) {
@@ -227,7 +237,8 @@ parian_result parian_renderer_set_settings(parian_renderer *renderer, const pari
     }
     for (int c = 0; c < 3; c++) {
         if (!(settings->background[c] >= 0.0f && settings->background[c] < 1e12f)) {
-            return parian_fail(&renderer->env, PARIAN_E_ARGUMENT, "the background is not within 0 to 1e12");
+            return parian_fail(&renderer->env, PARIAN_E_ARGUMENT,
+                               "the background is not within 0 to 1e12");
         }
     }
     renderer->settings = *settings;
@@ -266,8 +277,9 @@ parian_result parian_renderer_draw(parian_renderer *renderer, const parian_draw_
     }
     if (desc->width < 1 || desc->height < 1 || desc->width > DRAW_SIDE_MAX ||
         desc->height > DRAW_SIDE_MAX) {
-        return parian_fail(&renderer->env, PARIAN_E_ARGUMENT, "a picture of %u x %u pixels, expected 1 to %d",
-                           desc->width, desc->height, DRAW_SIDE_MAX);
+        return parian_fail(&renderer->env, PARIAN_E_ARGUMENT,
+                           "a picture of %u x %u pixels, expected 1 to %d", desc->width,
+                           desc->height, DRAW_SIDE_MAX);
     }
     if (!all_finite(desc->camera.view, 16) || !all_finite(desc->camera.projection, 16) ||
         !isfinite(desc->exposure_ev) || fabsf(desc->exposure_ev) > 100.0f) {
@@ -292,7 +304,8 @@ parian_result parian_renderer_read_picture(parian_renderer *renderer, float (*ra
         return PARIAN_E_ARGUMENT;
     }
     if (!renderer->picture_width) {
-        return parian_fail(&renderer->env, PARIAN_E_ARGUMENT, "there is no picture before the first draw");
+        return parian_fail(&renderer->env, PARIAN_E_ARGUMENT,
+                           "there is no picture before the first draw");
     }
     return renderer->backend->read_picture(renderer, radiance, srgb);
 }
@@ -312,8 +325,8 @@ static void copy_surface(const parian_body *body, const parian_texel_arrays *arr
 }
 
 /* local, global and their sum, each where asked for. */
-static parian_result read_radiosity(parian_renderer *renderer, uint32_t b, const parian_texel_arrays *arrays,
-                                    size_t first)
+static parian_result read_radiosity(parian_renderer *renderer, uint32_t b,
+                                    const parian_texel_arrays *arrays, size_t first)
 {
     const parian_backend_table *backend = renderer->backend;
     size_t count = renderer->scene->data.bodies[b].texel_count;
@@ -346,7 +359,8 @@ done:
     return result;
 }
 
-parian_result parian_renderer_read_texels(parian_renderer *renderer, const parian_texel_arrays *arrays)
+parian_result parian_renderer_read_texels(parian_renderer *renderer,
+                                          const parian_texel_arrays *arrays)
 {
     if (!renderer || !arrays) {
         return PARIAN_E_ARGUMENT;
@@ -369,11 +383,12 @@ parian_result parian_renderer_read_texels(parian_renderer *renderer, const paria
     return result;
 }
 
-parian_result parian_renderer_read_register(parian_renderer *renderer, uint32_t body, uint32_t index,
-                                            float (*value)[3])
+parian_result parian_renderer_read_register(parian_renderer *renderer, uint32_t body,
+                                            uint32_t index, float (*value)[3])
 {
     parian_result result = parian_renderer_relight(renderer);
-    return result == PARIAN_OK ? renderer->backend->read_register(renderer, body, index, value) : result;
+    return result == PARIAN_OK ? renderer->backend->read_register(renderer, body, index, value)
+                               : result;
 }
 
 void parian_renderer_set_timing(parian_renderer *renderer, bool on)
@@ -381,7 +396,8 @@ void parian_renderer_set_timing(parian_renderer *renderer, bool on)
     renderer->timing = on;
 }
 
-size_t parian_renderer_get_times(const parian_renderer *renderer, parian_pass_time times[PARIAN_PASS_MAX])
+size_t parian_renderer_get_times(const parian_renderer *renderer,
+                                 parian_pass_time times[PARIAN_PASS_MAX])
 {
     memcpy(times, renderer->pass, sizeof renderer->pass);
     return PARIAN_PASS_COUNT;

@@ -39,10 +39,11 @@ typedef struct parian_backend_table {
     /* Shade and tone-map; keeps the pictures. */
     parian_result (*draw)(parian_renderer *renderer, const parian_draw_desc *desc);
     /* The linear picture of the last draw, rows from top to bottom; and the tone-mapped one. */
-    parian_result (*read_picture)(parian_renderer *renderer, float (*radiance)[4], uint8_t (*srgb)[4]);
+    parian_result (*read_picture)(parian_renderer *renderer, float (*radiance)[4],
+                                  uint8_t (*srgb)[4]);
     /* A result at owned texels of one body: [texel_count]. */
-    parian_result (*read_texels)(parian_renderer *renderer, uint32_t body, parian_texel_result which,
-                                 float (*value)[3]);
+    parian_result (*read_texels)(parian_renderer *renderer, uint32_t body,
+                                 parian_texel_result which, float (*value)[3]);
     /* A register of one body: [size of the register]; register 0 is Phi, 1 is B at vertices. */
     parian_result (*read_register)(parian_renderer *renderer, uint32_t body, uint32_t index,
                                    float (*value)[3]);
@@ -62,7 +63,7 @@ struct parian_renderer {
     parian_settings settings;
     parian_light_list lights;
     parian_body_optics *optics; /* [body_count] */
-    bool lights_changed; /* since the last relight */
+    bool lights_changed;        /* since the last relight */
     bool timing;
     double pass_start;
     parian_pass_time pass[PARIAN_PASS_COUNT];
@@ -77,12 +78,12 @@ void parian_renderer_end_pass(parian_renderer *renderer, parian_pass pass);
 uint32_t parian_body_register_count(const parian_body *body);
 uint32_t parian_body_register_size(const parian_body *body, uint32_t index);
 
-/* Distance by which a shaded point is lifted along its normal before shadow look-ups, metres, beyond what
- * the shadow texel asks for. */
+/* Distance by which a shaded point is lifted along its normal before shadow look-ups, metres,
+ * beyond what the shadow texel asks for. */
 float parian_renderer_shadow_lift(const parian_renderer *renderer);
 
 /* Tests: a register of a body after relighting. */
-parian_result parian_renderer_read_register(parian_renderer *renderer, uint32_t body, uint32_t index,
-                                            float (*value)[3]);
+parian_result parian_renderer_read_register(parian_renderer *renderer, uint32_t body,
+                                            uint32_t index, float (*value)[3]);
 
 #endif

@@ -53,14 +53,16 @@ static parian_scene_info summarise(const parian_scene_data *data)
     memcpy(info.upper, info.body_upper, sizeof info.upper);
     for (uint32_t s = 0; s < data->surrounding_count; s++) {
         const parian_surrounding *piece = &data->surroundings[s];
-        grow(info.lower, info.upper, (const float(*)[3])piece->vertex_position, piece->vertex_count);
+        grow(info.lower, info.upper, (const float(*)[3])piece->vertex_position,
+             piece->vertex_count);
     }
     clear_empty(info.body_lower, info.body_upper);
     clear_empty(info.lower, info.upper);
     return info;
 }
 
-parian_result parian_scene_adopt(const parian_env *env, parian_scene_data *data, parian_scene **scene)
+parian_result parian_scene_adopt(const parian_env *env, parian_scene_data *data,
+                                 parian_scene **scene)
 {
     parian_scene *made;
     if (!PARIAN_NEW0(env, made, 1)) {

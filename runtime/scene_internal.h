@@ -15,6 +15,7 @@ struct parian_scene {
 };
 
 /* A scene from derived data, which it takes over (and frees, also on failure). */
-parian_result parian_scene_adopt(const parian_env *env, parian_scene_data *data, parian_scene **scene);
+parian_result parian_scene_adopt(const parian_env *env, parian_scene_data *data,
+                                 parian_scene **scene);
 
 #endif

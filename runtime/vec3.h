@@ -65,7 +65,8 @@ static inline float vec3_normalize(float v[3])
     return length * peak;
 }
 
-/* Two unit vectors that make a right-handed frame (u, v, forward) with a unit forward; v is near up. */
+/* Two unit vectors that make a right-handed frame (u, v, forward) with a unit forward; v is near
+ * up. */
 static inline void vec3_frame(const float forward[3], const float up[3], float u[3], float v[3])
 {
     float axis[3] = {up[0], up[1], up[2]};

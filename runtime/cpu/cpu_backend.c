@@ -28,7 +28,7 @@ typedef struct cpu_body {
 } cpu_body;
 
 typedef struct cpu_state {
-    cpu_body *body;         /* [body_count] */
+    cpu_body *body;            /* [body_count] */
     parian_shade_atlas *atlas; /* [body_count] the same pointers, as shading takes them */
     parian_cpu_lights lights;
     float (*picture)[4];
@@ -97,7 +97,8 @@ static bool allocate_body(const parian_env *env, const parian_body *body, cpu_bo
     return PARIAN_NEW0(env, made->irradiance, body->texel_count) &&
            PARIAN_NEW0(env, made->local, body->texel_count) &&
            PARIAN_NEW0(env, made->global, body->texel_count) &&
-           PARIAN_NEW0(env, made->atlas.irradiance, atlas) && PARIAN_NEW0(env, made->atlas.local, atlas) &&
+           PARIAN_NEW0(env, made->atlas.irradiance, atlas) &&
+           PARIAN_NEW0(env, made->atlas.local, atlas) &&
            PARIAN_NEW0(env, made->atlas.global, atlas) &&
            fill_static(env, body, (const float(*)[3])body->texel_normal_map, &made->atlas.normal) &&
            fill_static(env, body, (const float(*)[3])body->texel_albedo, &made->atlas.albedo);
@@ -110,7 +111,8 @@ static parian_result create_body(const parian_env *env, const parian_body *body,
         result = parian_restriction_build(env, body, &made->restriction);
     }
     if (result == PARIAN_OK && !allocate_body(env, body, made)) {
-        result = parian_fail(env, PARIAN_E_NOMEM, "no memory to light a body of %u texels", body->texel_count);
+        result = parian_fail(env, PARIAN_E_NOMEM, "no memory to light a body of %u texels",
+                             body->texel_count);
     }
     return result;
 }
@@ -145,8 +147,8 @@ static void run_irradiance(parian_renderer *renderer, cpu_state *state)
 {
     for (uint32_t b = 0; b < renderer->scene->data.body_count; b++) {
         const parian_body_optics *optics = &renderer->optics[b];
-        parian_cpu_irradiance(&renderer->env, &state->lights, &renderer->scene->data.bodies[b], optics->eta,
-                              optics->zonal_transmit, state->body[b].irradiance);
+        parian_cpu_irradiance(&renderer->env, &state->lights, &renderer->scene->data.bodies[b],
+                              optics->eta, optics->zonal_transmit, state->body[b].irradiance);
     }
 }
 
@@ -165,11 +167,13 @@ static void run_product(parian_renderer *renderer, cpu_state *state)
         const parian_body *data = &renderer->scene->data.bodies[b];
         cpu_body *body = &state->body[b];
         for (uint32_t r = 2; r < body->register_count; r++) {
-            memset(body->registers[r], 0, parian_body_register_size(data, r) * sizeof *body->registers[r]);
+            memset(body->registers[r], 0,
+                   parian_body_register_size(data, r) * sizeof *body->registers[r]);
         }
         for (uint32_t o = 0; o < data->operator_count; o++) {
             const parian_operator *op = &data->operators[o];
-            parian_operator_apply(&renderer->env, op, (const float(*)[3])body->registers[op->source_register],
+            parian_operator_apply(&renderer->env, op,
+                                  (const float(*)[3])body->registers[op->source_register],
                                   body->registers[op->target_register], true);
         }
     }
@@ -180,8 +184,8 @@ static void run_filter(parian_renderer *renderer, cpu_state *state)
     for (uint32_t b = 0; b < renderer->scene->data.body_count; b++) {
         cpu_body *body = &state->body[b];
         parian_cpu_filter(&renderer->env, &renderer->scene->data.bodies[b], &body->kernels,
-                          (const float(*)[3])body->irradiance, (const float(*)[3])body->registers[1],
-                          body->local, body->global);
+                          (const float(*)[3])body->irradiance,
+                          (const float(*)[3])body->registers[1], body->local, body->global);
     }
 }
 
@@ -198,13 +202,14 @@ static void run_gutter(parian_renderer *renderer, cpu_state *state)
 
 static parian_result cpu_relight(parian_renderer *renderer)
 {
-    static void (*const passes[])(parian_renderer *, cpu_state *) = {run_irradiance, run_restrict,
-                                                                     run_product, run_filter, run_gutter};
+    static void (*const passes[])(parian_renderer *, cpu_state *) = {
+        run_irradiance, run_restrict, run_product, run_filter, run_gutter};
     cpu_state *state = renderer->state;
     state->lights.list = &renderer->lights;
     state->lights.lift = parian_renderer_shadow_lift(renderer);
     parian_renderer_begin_pass(renderer);
-    parian_result result = parian_cpu_shadow(&renderer->env, &renderer->scene->data, &state->lights);
+    parian_result result =
+        parian_cpu_shadow(&renderer->env, &renderer->scene->data, &state->lights);
     if (result != PARIAN_OK) {
         return result;
     }
@@ -227,8 +232,8 @@ static parian_result shade_picture(parian_renderer *renderer, const parian_draw_
     parian_view view = parian_view_make(&desc->camera);
     float(*samples)[4];
     if (!PARIAN_NEW(env, samples, (size_t)desc->width * side * desc->height * side)) {
-        return parian_fail(env, PARIAN_E_NOMEM, "no memory for a picture of %u x %u pixels", desc->width,
-                           desc->height);
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for a picture of %u x %u pixels",
+                           desc->width, desc->height);
     }
     parian_shade_desc shade = {.scene = &renderer->scene->data,
                                .optics = renderer->optics,
@@ -240,7 +245,8 @@ static parian_result shade_picture(parian_renderer *renderer, const parian_draw_
                                .height = desc->height * side};
     parian_result result = parian_cpu_shade(env, &shade, samples);
     if (result == PARIAN_OK) {
-        parian_cpu_resolve((const float(*)[4])samples, desc->width, desc->height, side, state->picture);
+        parian_cpu_resolve((const float(*)[4])samples, desc->width, desc->height, side,
+                           state->picture);
     }
     parian_free(env, samples);
     return result;
@@ -256,8 +262,8 @@ static parian_result cpu_draw(parian_renderer *renderer, const parian_draw_desc 
     parian_free(env, state->srgb);
     state->srgb = NULL;
     if (!PARIAN_NEW(env, state->picture, count) || !PARIAN_NEW(env, state->srgb, count)) {
-        return parian_fail(env, PARIAN_E_NOMEM, "no memory for a picture of %u x %u pixels", desc->width,
-                           desc->height);
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for a picture of %u x %u pixels",
+                           desc->width, desc->height);
     }
     parian_renderer_begin_pass(renderer);
     parian_result result = shade_picture(renderer, desc);
@@ -274,7 +280,8 @@ static parian_result cpu_draw(parian_renderer *renderer, const parian_draw_desc 
     return PARIAN_OK;
 }
 
-static parian_result cpu_read_picture(parian_renderer *renderer, float (*radiance)[4], uint8_t (*srgb)[4])
+static parian_result cpu_read_picture(parian_renderer *renderer, float (*radiance)[4],
+                                      uint8_t (*srgb)[4])
 {
     const cpu_state *state = renderer->state;
     size_t count = (size_t)renderer->picture_width * renderer->picture_height;
@@ -289,8 +296,8 @@ static parian_result cpu_read_picture(parian_renderer *renderer, float (*radianc
 
 /* ---- arrays ---- */
 
-static parian_result cpu_read_texels(parian_renderer *renderer, uint32_t body, parian_texel_result which,
-                                     float (*value)[3])
+static parian_result cpu_read_texels(parian_renderer *renderer, uint32_t body,
+                                     parian_texel_result which, float (*value)[3])
 {
     const cpu_body *made = &((const cpu_state *)renderer->state)->body[body];
     const float(*from)[3] = (const float(*)[3])(which == PARIAN_RESULT_IRRADIANCE ? made->irradiance

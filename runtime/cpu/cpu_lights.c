@@ -1,4 +1,5 @@
-/* cpu_lights.c - light that arrives at a point, and shadows: the C evaluation of shaders/lights.glsl.
+/* cpu_lights.c - light that arrives at a point, and shadows: the C evaluation of
+ * shaders/lights.glsl.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -36,9 +37,9 @@ static void shadow_fragment(void *context, uint32_t pixel, uint32_t triangle, co
     }
 }
 
-static parian_result draw_caster(const parian_env *env, uint32_t size, const parian_shadow_layer *layer,
-                                 const float (*position)[3], const uint32_t (*triangle)[3], uint32_t count,
-                                 float *depth)
+static parian_result draw_caster(const parian_env *env, uint32_t size,
+                                 const parian_shadow_layer *layer, const float (*position)[3],
+                                 const uint32_t (*triangle)[3], uint32_t count, float *depth)
 {
     shadow_target target = {layer, position, triangle, depth};
     parian_raster_desc desc = {.width = size,
@@ -56,8 +57,8 @@ static parian_result draw_caster(const parian_env *env, uint32_t size, const par
     return parian_raster_run(env, &desc);
 }
 
-static parian_result draw_layer(const parian_env *env, const parian_scene_data *scene, uint32_t size,
-                                const parian_shadow_layer *layer, float *depth)
+static parian_result draw_layer(const parian_env *env, const parian_scene_data *scene,
+                                uint32_t size, const parian_shadow_layer *layer, float *depth)
 {
     parian_result result = PARIAN_OK;
     for (size_t i = 0; i < (size_t)size * size; i++) {
@@ -76,7 +77,8 @@ static parian_result draw_layer(const parian_env *env, const parian_scene_data *
     return result;
 }
 
-parian_result parian_cpu_shadow(const parian_env *env, const parian_scene_data *scene, parian_cpu_lights *lights)
+parian_result parian_cpu_shadow(const parian_env *env, const parian_scene_data *scene,
+                                parian_cpu_lights *lights)
 {
     const parian_light_list *list = lights->list;
     size_t area = (size_t)list->shadow_size * list->shadow_size;
@@ -87,7 +89,8 @@ parian_result parian_cpu_shadow(const parian_env *env, const parian_scene_data *
                            list->layer_count, list->shadow_size);
     }
     for (uint32_t l = 0; result == PARIAN_OK && l < list->layer_count; l++) {
-        result = draw_layer(env, scene, list->shadow_size, &list->layer[l], lights->depth + l * area);
+        result =
+            draw_layer(env, scene, list->shadow_size, &list->layer[l], lights->depth + l * area);
     }
     return result;
 }
@@ -98,8 +101,8 @@ static float row_at(const float row[4], const float p[3])
 }
 
 /* Light that passes one map; false where the point does not fall on it. */
-static bool look_up_layer(const parian_cpu_lights *lights, uint32_t index, const float p[3], const float n[3],
-                          float *lit)
+static bool look_up_layer(const parian_cpu_lights *lights, uint32_t index, const float p[3],
+                          const float n[3], float *lit)
 {
     const parian_shadow_layer *layer = &lights->list->layer[index];
     const float size = (float)lights->list->shadow_size;
@@ -144,8 +147,8 @@ float parian_cpu_visibility(const parian_cpu_lights *lights, const parian_light_
 /* ---- light at a point ---- */
 
 /* Bilinear look-up in one level, black outside. */
-static void image_level(const parian_light_list *list, const parian_light_sample *sample, uint32_t level,
-                        float s, float t, float rgb[3])
+static void image_level(const parian_light_list *list, const parian_light_sample *sample,
+                        uint32_t level, float s, float t, float rgb[3])
 {
     uint32_t offset = sample->image_offset;
     for (uint32_t l = 0; l < level; l++) {
@@ -167,8 +170,8 @@ static void image_level(const parian_light_list *list, const parian_light_sample
 }
 
 /* The projected picture at a point, filtered over `extent`. */
-static void image_at(const parian_light_list *list, const parian_light_sample *sample, const float away[3],
-                     float extent, float rgb[3])
+static void image_at(const parian_light_list *list, const parian_light_sample *sample,
+                     const float away[3], float extent, float rgb[3])
 {
     float z = vec3_dot(away, sample->direction), reach = z * sample->tan_outer;
     vec3_set(rgb, 0.0f);
@@ -193,8 +196,8 @@ static void image_at(const parian_light_list *list, const parian_light_sample *s
     }
 }
 
-void parian_cpu_light_at(const parian_light_list *list, const parian_light_sample *sample, const float p[3],
-                         float extent, float to_light[3], float irradiance[3])
+void parian_cpu_light_at(const parian_light_list *list, const parian_light_sample *sample,
+                         const float p[3], float extent, float to_light[3], float irradiance[3])
 {
     vec3_copy(irradiance, sample->color);
     if (sample->kind == PARIAN_SAMPLE_DIRECTIONAL || sample->kind == PARIAN_SAMPLE_PROBE) {
@@ -213,7 +216,8 @@ void parian_cpu_light_at(const parian_light_list *list, const parian_light_sampl
         attenuation *= fmaxf(cosine, 0.0f);
     }
     if (sample->kind == PARIAN_SAMPLE_SPOT) {
-        float ramp = (cosine - sample->cos_outer) / fmaxf(sample->cos_inner - sample->cos_outer, 1e-6f);
+        float ramp =
+            (cosine - sample->cos_outer) / fmaxf(sample->cos_inner - sample->cos_outer, 1e-6f);
         ramp = fminf(fmaxf(ramp, 0.0f), 1.0f);
         attenuation *= ramp * ramp * (3.0f - 2.0f * ramp);
         if (sample->image_levels > 0 && attenuation > 0.0f) {
@@ -229,8 +233,8 @@ void parian_cpu_light_at(const parian_light_list *list, const parian_light_sampl
 
 /* ---- environment ---- */
 
-static void evaluate_sh(const parian_light_list *list, const float direction[3], const float zonal[3],
-                        float value[3])
+static void evaluate_sh(const parian_light_list *list, const float direction[3],
+                        const float zonal[3], float value[3])
 {
     static const int band[PARIAN_SH_COUNT] = {0, 1, 1, 1, 2, 2, 2, 2, 2};
     float y[PARIAN_SH_COUNT];
@@ -318,8 +322,9 @@ static void irradiance_piece(void *context, size_t piece)
     }
 }
 
-void parian_cpu_irradiance(const parian_env *env, const parian_cpu_lights *lights, const parian_body *body,
-                           float eta, const float zonal[3], float (*irradiance)[3])
+void parian_cpu_irradiance(const parian_env *env, const parian_cpu_lights *lights,
+                           const parian_body *body, float eta, const float zonal[3],
+                           float (*irradiance)[3])
 {
     irradiance_job job = {lights, body, eta, zonal, irradiance};
     parian_par(env, (body->texel_count + TEXEL_PIECE - 1) / TEXEL_PIECE, irradiance_piece, &job);

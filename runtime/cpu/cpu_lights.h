@@ -1,4 +1,5 @@
-/* cpu_lights.h - light that arrives at a point, and shadows: the C evaluation of shaders/lights.glsl.
+/* cpu_lights.h - light that arrives at a point, and shadows: the C evaluation of
+ * shaders/lights.glsl.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -18,20 +19,21 @@ typedef struct parian_cpu_lights {
 
 /* Draw all shadow maps of the list; casters are all meshes of the scene. Replaces lights->depth.
  * Errors: PARIAN_E_NOMEM. */
-parian_result parian_cpu_shadow(const parian_env *env, const parian_scene_data *scene, parian_cpu_lights *lights);
+parian_result parian_cpu_shadow(const parian_env *env, const parian_scene_data *scene,
+                                parian_cpu_lights *lights);
 
-/* Light of a sample at a point: direction towards the light and irradiance on a plane perpendicular to it,
- * unshadowed. extent: side of the patch of surface that the point stands for, metres (pictures are filtered
- * over it, and it bounds 1/d^2). */
-void parian_cpu_light_at(const parian_light_list *list, const parian_light_sample *sample, const float p[3],
-                         float extent, float to_light[3], float irradiance[3]);
+/* Light of a sample at a point: direction towards the light and irradiance on a plane perpendicular
+ * to it, unshadowed. extent: side of the patch of surface that the point stands for, metres
+ * (pictures are filtered over it, and it bounds 1/d^2). */
+void parian_cpu_light_at(const parian_light_list *list, const parian_light_sample *sample,
+                         const float p[3], float extent, float to_light[3], float irradiance[3]);
 
 /* Share of a sample's light that reaches a point with a unit normal, in [0, 1]. */
 float parian_cpu_visibility(const parian_cpu_lights *lights, const parian_light_sample *sample,
                             const float p[3], const float n[3]);
 
-/* Irradiance of the environment with the zonal coefficients of a cosine lobe, and shadows by probes.
- * eta: weigh probes by F_t, or 0 for none. */
+/* Irradiance of the environment with the zonal coefficients of a cosine lobe, and shadows by
+ * probes. eta: weigh probes by F_t, or 0 for none. */
 void parian_cpu_environment(const parian_cpu_lights *lights, const float p[3], const float n[3],
                             const float zonal[3], float eta, float irradiance[3]);
 
@@ -40,7 +42,8 @@ void parian_cpu_environment_radiance(const parian_light_list *list, const float 
                                      float radiance[3]);
 
 /* E of every texel of a body: [texel_count]. */
-void parian_cpu_irradiance(const parian_env *env, const parian_cpu_lights *lights, const parian_body *body,
-                           float eta, const float zonal[3], float (*irradiance)[3]);
+void parian_cpu_irradiance(const parian_env *env, const parian_cpu_lights *lights,
+                           const parian_body *body, float eta, const float zonal[3],
+                           float (*irradiance)[3]);
 
 #endif

@@ -11,7 +11,8 @@
 
 enum { BAND_COUNT = 32, SETUP_PIECE = 4096 };
 
-/* Edge functions over pixel coordinates, divided by the determinant; and the pixels they may cover. */
+/* Edge functions over pixel coordinates, divided by the determinant; and the pixels they may cover.
+ */
 typedef struct raster_setup {
     double edge[3][3];
     uint32_t x0, x1, y0, y1; /* half-open; empty for what cannot be seen */
@@ -103,7 +104,8 @@ static void set_up_piece(void *context, size_t piece)
     }
 }
 
-static void fill_row(const parian_raster_desc *desc, const raster_setup *s, uint32_t triangle, uint32_t y)
+static void fill_row(const parian_raster_desc *desc, const raster_setup *s, uint32_t triangle,
+                     uint32_t y)
 {
     for (uint32_t x = s->x0; x < s->x1; x++) {
         float share[3];
@@ -137,7 +139,8 @@ parian_result parian_raster_run(const parian_env *env, const parian_raster_desc 
 {
     raster_job job = {desc, NULL};
     if (!PARIAN_NEW(env, job.setup, desc->triangle_count)) {
-        return parian_fail(env, PARIAN_E_NOMEM, "no memory to draw %u triangles", desc->triangle_count);
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory to draw %u triangles",
+                           desc->triangle_count);
     }
     parian_par(env, (desc->triangle_count + SETUP_PIECE - 1) / SETUP_PIECE, set_up_piece, &job);
     parian_par(env, BAND_COUNT, fill_band, &job);

@@ -39,11 +39,13 @@ static mesh_view view_mesh(const parian_scene_data *scene, uint32_t mesh)
 {
     if (mesh < scene->body_count) {
         const parian_body *body = &scene->bodies[mesh];
-        return (mesh_view){(const float(*)[3])body->vertex_position, (const uint32_t(*)[3])body->triangle,
+        return (mesh_view){(const float(*)[3])body->vertex_position,
+                           (const uint32_t(*)[3])body->triangle,
                            (const float(*)[3][3])body->corner_normal, body->triangle_count};
     }
     const parian_surrounding *piece = &scene->surroundings[mesh - scene->body_count];
-    return (mesh_view){(const float(*)[3])piece->vertex_position, (const uint32_t(*)[3])piece->triangle,
+    return (mesh_view){(const float(*)[3])piece->vertex_position,
+                       (const uint32_t(*)[3])piece->triangle,
                        (const float(*)[3][3])piece->corner_normal, piece->triangle_count};
 }
 
@@ -117,8 +119,8 @@ static float ggx(float alpha, float n_l, float n_v, float n_h)
 }
 
 /* Surface reflection of lights and environment. */
-static void reflect_lights(const parian_shade_desc *desc, float eta, const float p[3], const float smooth[3],
-                           const float n[3], const float v[3], float sum[3])
+static void reflect_lights(const parian_shade_desc *desc, float eta, const float p[3],
+                           const float smooth[3], const float n[3], const float v[3], float sum[3])
 {
     const parian_light_list *list = desc->lights->list;
     float roughness = desc->settings->roughness > 0.0f ? desc->settings->roughness : 0.35f;
@@ -178,15 +180,17 @@ static void scattered(const parian_shade_desc *desc, uint32_t b, const float uv[
     }
 }
 
-static void shade_body(const parian_shade_desc *desc, uint32_t b, uint32_t triangle, const float uv[2],
-                       const float p[3], const float smooth[3], const float v[3], float out[3])
+static void shade_body(const parian_shade_desc *desc, uint32_t b, uint32_t triangle,
+                       const float uv[2], const float p[3], const float smooth[3], const float v[3],
+                       float out[3])
 {
     const parian_body_optics *optics = &desc->optics[b];
     const parian_settings *settings = desc->settings;
     float n[3];
     vec3_copy(n, smooth);
     if (desc->atlas[b].normal && !settings->no_normal_map) {
-        fetch_atlas((const float(*)[4])desc->atlas[b].normal, desc->scene->bodies[b].atlas_size, uv, n);
+        fetch_atlas((const float(*)[4])desc->atlas[b].normal, desc->scene->bodies[b].atlas_size, uv,
+                    n);
         vec3_normalize(n);
     }
     float n_v = fmaxf(vec3_dot(n, v), 1e-3f);
@@ -267,7 +271,8 @@ static void shade_point(const parian_shade_desc *desc, const seen_point *seen, f
         vec3_add_scaled(p, mesh.position[mesh.triangle[seen->triangle][k]], beta[k]);
         vec3_add_scaled(n, mesh.corner_normal[seen->triangle][k], beta[k]);
         for (int axis = 0; body && axis < 2; axis++) {
-            uv[axis] += beta[k] * desc->scene->bodies[seen->mesh].corner_uv[seen->triangle][k][axis];
+            uv[axis] +=
+                beta[k] * desc->scene->bodies[seen->mesh].corner_uv[seen->triangle][k][axis];
         }
     }
     vec3_normalize(n);
@@ -297,13 +302,15 @@ static void shade_piece(void *context, size_t piece)
     }
 }
 
-parian_result parian_cpu_shade(const parian_env *env, const parian_shade_desc *desc, float (*radiance)[4])
+parian_result parian_cpu_shade(const parian_env *env, const parian_shade_desc *desc,
+                               float (*radiance)[4])
 {
     draw_job job = {.desc = desc, .radiance = radiance};
     size_t total = (size_t)desc->width * desc->height;
     parian_result result = PARIAN_OK;
     if (!PARIAN_NEW(env, job.seen, total)) {
-        return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u x %u samples", desc->width, desc->height);
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u x %u samples", desc->width,
+                           desc->height);
     }
     for (size_t i = 0; i < total; i++) {
         job.seen[i] = (seen_point){NOTHING, 0, 0.0f, 0.0f, 2.0f};

@@ -9,7 +9,8 @@
 #include "shade/body_optics.h"
 #include "shade/view.h"
 
-/* What shading reads of one body: atlases with their gutters, [atlas_size^2], or NULL where absent. */
+/* What shading reads of one body: atlases with their gutters, [atlas_size^2], or NULL where absent.
+ */
 typedef struct parian_shade_atlas {
     float (*irradiance)[4], (*local)[4], (*global)[4];
     float (*normal)[4], (*albedo)[4];
@@ -27,6 +28,7 @@ typedef struct parian_shade_desc {
 
 /* Draw bodies and surroundings: [width * height] radiance and coverage, row 0 on top.
  * Errors: PARIAN_E_NOMEM. */
-parian_result parian_cpu_shade(const parian_env *env, const parian_shade_desc *desc, float (*radiance)[4]);
+parian_result parian_cpu_shade(const parian_env *env, const parian_shade_desc *desc,
+                               float (*radiance)[4]);
 
 #endif

@@ -78,7 +78,8 @@ static float encode(float linear)
     return x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1.0f / 2.4f) - 0.055f;
 }
 
-void parian_cpu_tone(const float (*picture)[4], size_t count, float exposure, bool plain, uint8_t (*srgb)[4])
+void parian_cpu_tone(const float (*picture)[4], size_t count, float exposure, bool plain,
+                     uint8_t (*srgb)[4])
 {
     for (size_t i = 0; i < count; i++) {
         float rgb[3] = {picture[i][0], picture[i][1], picture[i][2]};

@@ -1,4 +1,5 @@
-/* cpu_transfer.c - restriction, local filter and interpolation: the C evaluation of the transfer passes.
+/* cpu_transfer.c - restriction, local filter and interpolation: the C evaluation of the transfer
+ * passes.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -48,7 +49,8 @@ void parian_cpu_restrict(const parian_env *env, const parian_restriction *restri
                          const float (*irradiance)[3], float (*flux)[3], float (*direct)[3])
 {
     restrict_job job = {restriction, irradiance, flux, direct};
-    parian_par(env, (restriction->vertex_count + VERTEX_PIECE - 1) / VERTEX_PIECE, restrict_piece, &job);
+    parian_par(env, (restriction->vertex_count + VERTEX_PIECE - 1) / VERTEX_PIECE, restrict_piece,
+               &job);
 }
 
 typedef struct filter_job {
@@ -141,9 +143,9 @@ static void filter_piece(void *context, size_t piece)
     }
 }
 
-void parian_cpu_filter(const parian_env *env, const parian_body *body, const parian_kernels *kernels,
-                       const float (*irradiance)[3], const float (*vertex_radiosity)[3], float (*local)[3],
-                       float (*global)[3])
+void parian_cpu_filter(const parian_env *env, const parian_body *body,
+                       const parian_kernels *kernels, const float (*irradiance)[3],
+                       const float (*vertex_radiosity)[3], float (*local)[3], float (*global)[3])
 {
     filter_job job = {body, kernels, irradiance, vertex_radiosity, local, global};
     parian_par(env, (body->texel_count + TEXEL_PIECE - 1) / TEXEL_PIECE, filter_piece, &job);

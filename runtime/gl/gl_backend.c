@@ -45,13 +45,15 @@ static parian_result upload_scene(parian_renderer *renderer, gl_state *state)
     parian_result result = PARIAN_OK;
     if (!PARIAN_NEW0(&renderer->env, state->body, data->body_count) ||
         !PARIAN_NEW0(&renderer->env, state->surrounding, data->surrounding_count)) {
-        return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for %u bodies", data->body_count);
+        return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for %u bodies",
+                           data->body_count);
     }
     for (uint32_t b = 0; result == PARIAN_OK && b < data->body_count; b++) {
         result = gl_body_create(&state->device, &data->bodies[b], &state->body[b]);
     }
     for (uint32_t s = 0; result == PARIAN_OK && s < data->surrounding_count; s++) {
-        result = gl_mesh_create(&state->device, NULL, &data->surroundings[s], &state->surrounding[s]);
+        result =
+            gl_mesh_create(&state->device, NULL, &data->surroundings[s], &state->surrounding[s]);
     }
     state->device.gl.GenFramebuffers(1, &state->shadow_framebuffer);
     return result;
@@ -65,8 +67,8 @@ static parian_result gl_create(parian_renderer *renderer)
     }
     renderer->state = state;
     parian_result result = gl_device_init(&renderer->env, renderer->desc.get_proc_address,
-                                          renderer->desc.memory_budget, &state->device, renderer->name,
-                                          sizeof renderer->name);
+                                          renderer->desc.memory_budget, &state->device,
+                                          renderer->name, sizeof renderer->name);
     if (result != PARIAN_OK) {
         return result;
     }
@@ -85,8 +87,8 @@ static void end_pass(parian_renderer *renderer, parian_pass pass)
 
 static parian_result run_relight(parian_renderer *renderer)
 {
-    static void (*const passes[])(parian_renderer *) = {gl_irradiance_run, gl_restrict_run, gl_product_run,
-                                                        gl_filter_run, gl_gutter_run};
+    static void (*const passes[])(parian_renderer *) = {
+        gl_irradiance_run, gl_restrict_run, gl_product_run, gl_filter_run, gl_gutter_run};
     parian_result result = gl_lights_upload(renderer);
     parian_renderer_begin_pass(renderer);
     if (result == PARIAN_OK) {
@@ -131,13 +133,15 @@ static parian_result gl_draw(parian_renderer *renderer, const parian_draw_desc *
 /* ---- reading ---- */
 
 /* Read a texture and turn it upside down: GL starts below. */
-static parian_result read_flipped(gl_device *device, const gl_texture *texture, size_t pixel_size, void *pixels)
+static parian_result read_flipped(gl_device *device, const gl_texture *texture, size_t pixel_size,
+                                  void *pixels)
 {
     size_t stride = texture->width * pixel_size;
     uint8_t *rows, *to = pixels;
     if (!PARIAN_NEW(device->env, rows, stride * texture->height)) {
-        return parian_fail(device->env, PARIAN_E_NOMEM, "no memory to read a picture of %u x %u pixels",
-                           texture->width, texture->height);
+        return parian_fail(device->env, PARIAN_E_NOMEM,
+                           "no memory to read a picture of %u x %u pixels", texture->width,
+                           texture->height);
     }
     gl_texture_read(device, texture, rows);
     for (uint32_t y = 0; y < texture->height; y++) {
@@ -147,7 +151,8 @@ static parian_result read_flipped(gl_device *device, const gl_texture *texture, 
     return PARIAN_OK;
 }
 
-static parian_result gl_read_picture(parian_renderer *renderer, float (*radiance)[4], uint8_t (*srgb)[4])
+static parian_result gl_read_picture(parian_renderer *renderer, float (*radiance)[4],
+                                     uint8_t (*srgb)[4])
 {
     gl_state *state = renderer->state;
     parian_result result = PARIAN_OK;
@@ -162,13 +167,13 @@ static parian_result gl_read_picture(parian_renderer *renderer, float (*radiance
 }
 
 /* Read a float texture and pick its texels: element i is at place[i], or at i without places. */
-static parian_result read_picked(gl_device *device, const gl_texture *texture, const uint32_t *place,
-                                 uint32_t count, float (*value)[3])
+static parian_result read_picked(gl_device *device, const gl_texture *texture,
+                                 const uint32_t *place, uint32_t count, float (*value)[3])
 {
     float(*pixels)[4];
     if (!PARIAN_NEW(device->env, pixels, (size_t)texture->width * texture->height)) {
-        return parian_fail(device->env, PARIAN_E_NOMEM, "no memory to read %u x %u texels", texture->width,
-                           texture->height);
+        return parian_fail(device->env, PARIAN_E_NOMEM, "no memory to read %u x %u texels",
+                           texture->width, texture->height);
     }
     gl_device_enter(device);
     gl_texture_read(device, texture, pixels);
@@ -180,8 +185,8 @@ static parian_result read_picked(gl_device *device, const gl_texture *texture, c
     return result;
 }
 
-static parian_result gl_read_texels(parian_renderer *renderer, uint32_t body, parian_texel_result which,
-                                    float (*value)[3])
+static parian_result gl_read_texels(parian_renderer *renderer, uint32_t body,
+                                    parian_texel_result which, float (*value)[3])
 {
     gl_state *state = renderer->state;
     const parian_body *data = &renderer->scene->data.bodies[body];

@@ -10,12 +10,12 @@
 #include "method/atlas_fill.h"
 #include "method/restriction.h"
 
-#define TRY(call)                                                                                            \
-    do {                                                                                                     \
-        parian_result try_result = (call);                                                                   \
-        if (try_result != PARIAN_OK) {                                                                       \
-            return try_result;                                                                               \
-        }                                                                                                    \
+#define TRY(call)                                                                                  \
+    do {                                                                                           \
+        parian_result try_result = (call);                                                         \
+        if (try_result != PARIAN_OK) {                                                             \
+            return try_result;                                                                     \
+        }                                                                                          \
     } while (0)
 
 /* ---- atlases ---- */
@@ -71,22 +71,25 @@ static void place_albedo(const parian_body *body, float (*atlas)[4])
 }
 
 static parian_result upload_atlas(gl_device *device, const parian_body *body, gl_format format,
-                                  void (*place)(const parian_body *, float (*)[4]), float (*scratch)[4],
-                                  gl_texture *texture)
+                                  void (*place)(const parian_body *, float (*)[4]),
+                                  float (*scratch)[4], gl_texture *texture)
 {
     memset(scratch, 0, (size_t)body->atlas_size * body->atlas_size * sizeof *scratch);
     place(body, scratch);
     return gl_texture_create(device, format, body->atlas_size, body->atlas_size, scratch, texture);
 }
 
-static parian_result upload_atlases(gl_device *device, const parian_body *body, float (*scratch)[4], gl_body *made)
+static parian_result upload_atlases(gl_device *device, const parian_body *body, float (*scratch)[4],
+                                    gl_body *made)
 {
     TRY(upload_atlas(device, body, GL_FORMAT_RGBA32F, place_positions, scratch, &made->position));
     TRY(upload_atlas(device, body, GL_FORMAT_RGBA32F, place_normals, scratch, &made->normal));
-    TRY(upload_atlas(device, body, GL_FORMAT_RG32F, place_barycentrics, scratch, &made->barycentric));
+    TRY(upload_atlas(device, body, GL_FORMAT_RG32F, place_barycentrics, scratch,
+                     &made->barycentric));
     TRY(upload_atlas(device, body, GL_FORMAT_RGBA32UI, place_info, scratch, &made->info));
     if (body->texel_normal_map) {
-        TRY(upload_atlas(device, body, GL_FORMAT_RGBA32F, place_normal_map, scratch, &made->normal_map));
+        TRY(upload_atlas(device, body, GL_FORMAT_RGBA32F, place_normal_map, scratch,
+                         &made->normal_map));
     }
     if (body->texel_albedo) {
         TRY(upload_atlas(device, body, GL_FORMAT_RGBA32F, place_albedo, scratch, &made->albedo));
@@ -94,7 +97,8 @@ static parian_result upload_atlases(gl_device *device, const parian_body *body, 
     gl_texture *results[6] = {&made->irradiance,       &made->local,       &made->global,
                               &made->shown_irradiance, &made->shown_local, &made->shown_global};
     for (int i = 0; i < 6; i++) {
-        TRY(gl_texture_create(device, GL_FORMAT_RGBA32F, body->atlas_size, body->atlas_size, NULL, results[i]));
+        TRY(gl_texture_create(device, GL_FORMAT_RGBA32F, body->atlas_size, body->atlas_size, NULL,
+                              results[i]));
     }
     return PARIAN_OK;
 }
@@ -103,8 +107,8 @@ static parian_result create_atlases(gl_device *device, const parian_body *body, 
 {
     float(*scratch)[4];
     if (!PARIAN_NEW(device->env, scratch, (size_t)body->atlas_size * body->atlas_size)) {
-        return parian_fail(device->env, PARIAN_E_NOMEM, "no memory for an atlas of %u texels a side",
-                           body->atlas_size);
+        return parian_fail(device->env, PARIAN_E_NOMEM,
+                           "no memory for an atlas of %u texels a side", body->atlas_size);
     }
     parian_result result = upload_atlases(device, body, scratch, made);
     parian_free(device->env, scratch);
@@ -159,9 +163,10 @@ static parian_result upload_restriction(gl_device *device, const parian_body *bo
                                         const parian_restriction *restriction, gl_body *made)
 {
     feed_list feeds = {body, restriction->feed};
-    TRY(gl_array_upload(device, GL_FORMAT_R32UI, (uint64_t)restriction->vertex_count + 1, restriction->offset,
-                        &made->feed_offset));
-    TRY(gl_array_create(device, GL_FORMAT_RG32UI, restriction->total, copy_feeds, &feeds, &made->feed));
+    TRY(gl_array_upload(device, GL_FORMAT_R32UI, (uint64_t)restriction->vertex_count + 1,
+                        restriction->offset, &made->feed_offset));
+    TRY(gl_array_create(device, GL_FORMAT_RG32UI, restriction->total, copy_feeds, &feeds,
+                        &made->feed));
     if (restriction->weight) {
         TRY(gl_array_upload(device, GL_FORMAT_RGB16F, restriction->total, restriction->weight,
                             &made->feed_weight));
@@ -185,7 +190,8 @@ typedef struct kernel_planes {
     uint64_t interior, taps;
 } kernel_planes;
 
-/* From one kernel after the other to one tap after the other, so that neighbours read neighbours. */
+/* From one kernel after the other to one tap after the other, so that neighbours read neighbours.
+ */
 static void copy_planes(const void *context, uint64_t first, uint64_t count, void *to)
 {
     const kernel_planes *planes = context;
@@ -200,8 +206,8 @@ static void copy_planes(const void *context, uint64_t first, uint64_t count, voi
     }
 }
 
-static parian_result upload_kernels(gl_device *device, const parian_body *body, const parian_kernels *kernels,
-                                    gl_body *made)
+static parian_result upload_kernels(gl_device *device, const parian_body *body,
+                                    const parian_kernels *kernels, gl_body *made)
 {
     ordinal_list neighbours = {body, body->border_neighbour};
     uint64_t taps = (uint64_t)body->kernel_width * body->kernel_width;
@@ -211,10 +217,12 @@ static parian_result upload_kernels(gl_device *device, const parian_body *body, 
     TRY(gl_array_create(device, GL_FORMAT_RGB16F, made->interior_count * taps, copy_planes, &planes,
                         &made->kernel));
     if (body->border_count) {
-        TRY(gl_array_upload(device, GL_FORMAT_R32UI, (uint64_t)body->border_count + 1, body->border_offset,
-                            &made->border));
-        TRY(gl_array_create(device, GL_FORMAT_R32UI, listed, copy_places, &neighbours, &made->neighbour));
-        TRY(gl_array_upload(device, GL_FORMAT_RGB16F, listed, kernels->border, &made->border_kernel));
+        TRY(gl_array_upload(device, GL_FORMAT_R32UI, (uint64_t)body->border_count + 1,
+                            body->border_offset, &made->border));
+        TRY(gl_array_create(device, GL_FORMAT_R32UI, listed, copy_places, &neighbours,
+                            &made->neighbour));
+        TRY(gl_array_upload(device, GL_FORMAT_RGB16F, listed, kernels->border,
+                            &made->border_kernel));
     }
     return PARIAN_OK;
 }
@@ -256,8 +264,8 @@ parian_result gl_body_create(gl_device *device, const parian_body *body, gl_body
     TRY(create_kernels(device, body, made));
     TRY(create_registers(device, body, made));
     if (body->gutter_count) {
-        TRY(gl_array_create(device, GL_FORMAT_RGBA32UI, body->gutter_count, copy_gutter_sources, body,
-                            &made->gutter_source));
+        TRY(gl_array_create(device, GL_FORMAT_RGBA32UI, body->gutter_count, copy_gutter_sources,
+                            body, &made->gutter_source));
         TRY(gl_array_upload(device, GL_FORMAT_RGBA32F, body->gutter_count, body->gutter_weight,
                             &made->gutter_weight));
     }
@@ -266,13 +274,17 @@ parian_result gl_body_create(gl_device *device, const parian_body *body, gl_body
 
 void gl_body_destroy(gl_device *device, gl_body *made)
 {
-    gl_texture *textures[] = {&made->position,      &made->normal,        &made->barycentric,
-                              &made->info,          &made->normal_map,    &made->albedo,
-                              &made->irradiance,    &made->local,         &made->global,
-                              &made->shown_irradiance, &made->shown_local, &made->shown_global,
-                              &made->feed_offset,   &made->feed,          &made->feed_weight,
-                              &made->kernel,        &made->border,        &made->neighbour,
-                              &made->border_kernel, &made->gutter_source, &made->gutter_weight};
+    gl_texture *textures[] = {&made->position,      &made->normal,
+                              &made->barycentric,   &made->info,
+                              &made->normal_map,    &made->albedo,
+                              &made->irradiance,    &made->local,
+                              &made->global,        &made->shown_irradiance,
+                              &made->shown_local,   &made->shown_global,
+                              &made->feed_offset,   &made->feed,
+                              &made->feed_weight,   &made->kernel,
+                              &made->border,        &made->neighbour,
+                              &made->border_kernel, &made->gutter_source,
+                              &made->gutter_weight};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++) {
         gl_texture_destroy(device, textures[i]);
     }

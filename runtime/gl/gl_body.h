@@ -46,8 +46,8 @@ typedef struct gl_body {
 parian_result gl_body_create(gl_device *device, const parian_body *body, gl_body *made);
 void gl_body_destroy(gl_device *device, gl_body *made);
 
-parian_result gl_mesh_create(gl_device *device, const parian_body *body, const parian_surrounding *surrounding,
-                             gl_mesh *mesh);
+parian_result gl_mesh_create(gl_device *device, const parian_body *body,
+                             const parian_surrounding *surrounding, gl_mesh *mesh);
 void gl_mesh_destroy(gl_device *device, gl_mesh *mesh);
 void gl_mesh_draw(gl_device *device, const gl_mesh *mesh);
 

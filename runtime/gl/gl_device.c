@@ -9,16 +9,16 @@
 
 #include "core/memory.h"
 
-static const GLenum kept_enables[] = {GL_DEPTH_TEST,           GL_BLEND,
-                                      GL_CULL_FACE,            GL_SCISSOR_TEST,
-                                      GL_STENCIL_TEST,         GL_RASTERIZER_DISCARD,
-                                      GL_POLYGON_OFFSET_FILL,  GL_FRAMEBUFFER_SRGB};
+static const GLenum kept_enables[] = {GL_DEPTH_TEST,          GL_BLEND,
+                                      GL_CULL_FACE,           GL_SCISSOR_TEST,
+                                      GL_STENCIL_TEST,        GL_RASTERIZER_DISCARD,
+                                      GL_POLYGON_OFFSET_FILL, GL_FRAMEBUFFER_SRGB};
 /* The last of them is not part of OpenGL ES 3.0. */
 enum { ENABLE_COUNT = 8, ENABLE_COUNT_ES = 7 };
 
-static const GLenum kept_pixel_store[] = {GL_PACK_ALIGNMENT,    GL_PACK_ROW_LENGTH,   GL_PACK_SKIP_ROWS,
-                                          GL_PACK_SKIP_PIXELS,  GL_UNPACK_ALIGNMENT,  GL_UNPACK_ROW_LENGTH,
-                                          GL_UNPACK_SKIP_ROWS,  GL_UNPACK_SKIP_PIXELS};
+static const GLenum kept_pixel_store[] = {
+    GL_PACK_ALIGNMENT,   GL_PACK_ROW_LENGTH,   GL_PACK_SKIP_ROWS,   GL_PACK_SKIP_PIXELS,
+    GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS};
 enum { PIXEL_STORE_COUNT = 8 };
 
 static bool has_extension(const parian_gl_api *gl, const char *name)
@@ -46,16 +46,17 @@ static parian_result check_version(gl_device *device, char *name, size_t name_si
     device->es = strncmp(version, "OpenGL ES", 9) == 0;
     gl->GetIntegerv(GL_MAJOR_VERSION, &major);
     gl->GetIntegerv(GL_MINOR_VERSION, &minor);
-    snprintf(name, name_size, "%s, OpenGL%s %d.%d", renderer ? renderer : "unknown", device->es ? " ES" : "",
-             major, minor);
+    snprintf(name, name_size, "%s, OpenGL%s %d.%d", renderer ? renderer : "unknown",
+             device->es ? " ES" : "", major, minor);
     int least = device->es ? 30 : 33;
     if (10 * major + minor < least) {
-        return parian_fail(device->env, PARIAN_E_UNSUPPORTED, "found %s, expected OpenGL 3.3 or OpenGL ES 3.0",
-                           version);
+        return parian_fail(device->env, PARIAN_E_UNSUPPORTED,
+                           "found %s, expected OpenGL 3.3 or OpenGL ES 3.0", version);
     }
     if (device->es && 10 * major + minor < 32 && !has_extension(gl, "GL_EXT_color_buffer_float")) {
-        return parian_fail(device->env, PARIAN_E_UNSUPPORTED,
-                           "this OpenGL ES cannot draw to floats: GL_EXT_color_buffer_float is missing");
+        return parian_fail(
+            device->env, PARIAN_E_UNSUPPORTED,
+            "this OpenGL ES cannot draw to floats: GL_EXT_color_buffer_float is missing");
     }
     gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &device->texture_max);
     gl->GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &device->layers_max);
@@ -63,7 +64,8 @@ static parian_result check_version(gl_device *device, char *name, size_t name_si
 }
 
 parian_result gl_device_init(const parian_env *env, void *(*get_proc_address)(const char *name),
-                             uint64_t memory_budget, gl_device *device, char *name, size_t name_size)
+                             uint64_t memory_budget, gl_device *device, char *name,
+                             size_t name_size)
 {
     device->env = env;
     device->memory_budget = memory_budget ? memory_budget : UINT64_MAX;
@@ -166,7 +168,8 @@ parian_result gl_device_leave(gl_device *device, parian_result result, const cha
     gl->ActiveTexture((GLenum)kept->active_texture);
     gl->DepthFunc((GLenum)kept->depth_func);
     gl->DepthMask(kept->depth_mask);
-    gl->ColorMask(kept->color_mask[0], kept->color_mask[1], kept->color_mask[2], kept->color_mask[3]);
+    gl->ColorMask(kept->color_mask[0], kept->color_mask[1], kept->color_mask[2],
+                  kept->color_mask[3]);
     for (int i = 0; i < (device->es ? ENABLE_COUNT_ES : ENABLE_COUNT); i++) {
         if (kept->enabled[i]) {
             gl->Enable(kept_enables[i]);
@@ -193,9 +196,11 @@ void gl_pass_use(gl_device *device, gl_program_id program)
     device->gl.UseProgram(device->program[program]);
 }
 
-void gl_pass_begin(gl_device *device, gl_program_id program, const gl_texture *const *target, int count)
+void gl_pass_begin(gl_device *device, gl_program_id program, const gl_texture *const *target,
+                   int count)
 {
-    static const GLenum buffers[3] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
+    static const GLenum buffers[3] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
+                                      GL_COLOR_ATTACHMENT2};
     const parian_gl_api *gl = &device->gl;
     gl_pass_use(device, program);
     if (count == 0) {
@@ -204,8 +209,8 @@ void gl_pass_begin(gl_device *device, gl_program_id program, const gl_texture *c
     gl->BindFramebuffer(GL_FRAMEBUFFER, device->framebuffer);
     gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, 0, 0);
     for (int i = 0; i < 3; i++) {
-        gl->FramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D, i < count ? target[i]->name : 0,
-                                 0);
+        gl->FramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D,
+                                 i < count ? target[i]->name : 0, 0);
     }
     gl->DrawBuffers(count, buffers);
     gl->Viewport(0, 0, (GLsizei)target[0]->width, (GLsizei)target[0]->height);

@@ -1,7 +1,7 @@
 /* gl_device.h - a GL context with our programs: textures, gather passes, kept state.
  *
- * Long arrays are textures of layers of 2048 x 512 texels, vectors (results of passes) are textures of
- * rows of 2048, atlases are square. shaders/arrays.glsl computes the places.
+ * Long arrays are textures of layers of 2048 x 512 texels, vectors (results of passes) are textures
+ * of rows of 2048, atlases are square. shaders/arrays.glsl computes the places.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -54,7 +54,8 @@ enum { GL_VECTOR_WIDTH = 2048, GL_ARRAY_WIDTH = 2048, GL_ARRAY_HEIGHT = 512, GL_
 
 /* What of the application's state our passes change, and put back. */
 typedef struct gl_kept_state {
-    GLint draw_framebuffer, read_framebuffer, renderbuffer, viewport[4], program, vertex_array, array_buffer;
+    GLint draw_framebuffer, read_framebuffer, renderbuffer, viewport[4], program, vertex_array,
+        array_buffer;
     GLint active_texture, depth_func, pack_buffer, unpack_buffer, pixel_store[8];
     GLint sampler[GL_UNIT_MAX];
     GLboolean color_mask[4], depth_mask, enabled[8];
@@ -74,37 +75,41 @@ typedef struct gl_device {
 } gl_device;
 
 /* Load functions, check version and extensions, build programs. name: room for the renderer's name.
- * Errors: PARIAN_E_UNSUPPORTED, PARIAN_E_DEVICE. After an error the device is destroyed as usual. */
+ * Errors: PARIAN_E_UNSUPPORTED, PARIAN_E_DEVICE. After an error the device is destroyed as usual.
+ */
 parian_result gl_device_init(const parian_env *env, void *(*get_proc_address)(const char *name),
-                             uint64_t memory_budget, gl_device *device, char *name, size_t name_size);
+                             uint64_t memory_budget, gl_device *device, char *name,
+                             size_t name_size);
 void gl_device_destroy(gl_device *device);
 
-/* Bracket all work in the application's context: state is kept and put back, texture units that were used
- * end up without textures. gl_device_leave turns a GL error into a result. */
+/* Bracket all work in the application's context: state is kept and put back, texture units that
+ * were used end up without textures. gl_device_leave turns a GL error into a result. */
 void gl_device_enter(gl_device *device);
 parian_result gl_device_leave(gl_device *device, parian_result result, const char *what);
 
 /* Textures. data may be NULL (2-D: contents undefined). Errors: PARIAN_E_NOMEM (budget or GL),
  * PARIAN_E_UNSUPPORTED (too large for this device). A zeroed texture may be destroyed. */
-parian_result gl_texture_create(gl_device *device, gl_format format, uint32_t width, uint32_t height,
-                                const void *data, gl_texture *texture);
+parian_result gl_texture_create(gl_device *device, gl_format format, uint32_t width,
+                                uint32_t height, const void *data, gl_texture *texture);
 /* A vector of count elements. */
 parian_result gl_vector_create(gl_device *device, uint64_t count, gl_texture *texture);
 /* Write elements [first, first + count) of a long array to `to`. */
 typedef void (*gl_array_source)(const void *context, uint64_t first, uint64_t count, void *to);
-parian_result gl_array_create(gl_device *device, gl_format format, uint64_t count, gl_array_source source,
-                              const void *context, gl_texture *texture);
+parian_result gl_array_create(gl_device *device, gl_format format, uint64_t count,
+                              gl_array_source source, const void *context, gl_texture *texture);
 /* The same from memory. */
 parian_result gl_array_upload(gl_device *device, gl_format format, uint64_t count, const void *data,
                               gl_texture *texture);
 /* Layers of a depth map. */
-parian_result gl_depth_create(gl_device *device, uint32_t size, uint32_t layers, gl_texture *texture);
+parian_result gl_depth_create(gl_device *device, uint32_t size, uint32_t layers,
+                              gl_texture *texture);
 void gl_texture_destroy(gl_device *device, gl_texture *texture);
 /* Count memory of buffers; PARIAN_E_NOMEM above the budget. */
 parian_result gl_memory_add(gl_device *device, uint64_t size);
 
 /* A pass: begin with targets (count may be 0: framebuffer is the caller's), set inputs, draw. */
-void gl_pass_begin(gl_device *device, gl_program_id program, const gl_texture *const *target, int count);
+void gl_pass_begin(gl_device *device, gl_program_id program, const gl_texture *const *target,
+                   int count);
 void gl_pass_use(gl_device *device, gl_program_id program); /* program alone */
 void gl_pass_texture(gl_device *device, const char *name, const gl_texture *texture);
 void gl_pass_int(gl_device *device, const char *name, int value);

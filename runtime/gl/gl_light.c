@@ -5,7 +5,8 @@
 #include "core/memory.h"
 #include "gl/gl_state.h"
 
-static parian_result upload_tables(gl_device *device, const parian_light_list *list, gl_state *state)
+static parian_result upload_tables(gl_device *device, const parian_light_list *list,
+                                   gl_state *state)
 {
     float(*samples)[4] = NULL, (*layers)[4] = NULL;
     parian_result result = PARIAN_E_NOMEM;
@@ -15,11 +16,11 @@ static parian_result upload_tables(gl_device *device, const parian_light_list *l
         goto done;
     }
     parian_light_list_tables(list, samples, layers);
-    result = gl_texture_create(device, GL_FORMAT_RGBA32F, PARIAN_LIGHT_ROW, list->sample_count + 1, samples,
-                               &state->light);
+    result = gl_texture_create(device, GL_FORMAT_RGBA32F, PARIAN_LIGHT_ROW, list->sample_count + 1,
+                               samples, &state->light);
     if (result == PARIAN_OK) {
-        result = gl_texture_create(device, GL_FORMAT_RGBA32F, PARIAN_LAYER_ROW, list->layer_count + 1, layers,
-                                   &state->layer);
+        result = gl_texture_create(device, GL_FORMAT_RGBA32F, PARIAN_LAYER_ROW,
+                                   list->layer_count + 1, layers, &state->layer);
     }
 done:
     parian_free(device->env, samples);
@@ -37,9 +38,11 @@ parian_result gl_lights_upload(parian_renderer *renderer)
     gl_texture_destroy(device, &state->image);
     parian_result result = upload_tables(device, list, state);
     if (result == PARIAN_OK) {
-        result = gl_array_upload(device, GL_FORMAT_RGBA32F, list->image_total, list->image, &state->image);
+        result = gl_array_upload(device, GL_FORMAT_RGBA32F, list->image_total, list->image,
+                                 &state->image);
     }
-    uint32_t size = list->layer_count ? list->shadow_size : 1, layers = list->layer_count ? list->layer_count : 1;
+    uint32_t size = list->layer_count ? list->shadow_size : 1,
+             layers = list->layer_count ? list->layer_count : 1;
     if (result == PARIAN_OK && (state->shadow.width != size || state->shadow.layers != layers)) {
         gl_texture_destroy(device, &state->shadow);
         result = gl_depth_create(device, size, layers, &state->shadow);
@@ -51,7 +54,8 @@ static void draw_layer(parian_renderer *renderer, const parian_shadow_layer *lay
 {
     gl_state *state = renderer->state;
     const parian_scene_data *data = &renderer->scene->data;
-    const float fit[4] = {layer->texel_scale, layer->perspective ? 1.0f : 0.0f, layer->near_m, layer->far_m};
+    const float fit[4] = {layer->texel_scale, layer->perspective ? 1.0f : 0.0f, layer->near_m,
+                          layer->far_m};
     gl_pass_vec4(&state->device, "u_row", 4, &layer->row[0][0]);
     gl_pass_vec4(&state->device, "u_fit", 1, fit);
     for (uint32_t b = 0; b < data->body_count; b++) {
@@ -75,9 +79,11 @@ parian_result gl_shadow_run(parian_renderer *renderer)
     gl->Viewport(0, 0, (GLsizei)state->shadow.width, (GLsizei)state->shadow.height);
     gl->Enable(GL_DEPTH_TEST);
     for (uint32_t l = 0; l < renderer->lights.layer_count; l++) {
-        gl->FramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, state->shadow.name, 0, (GLint)l);
+        gl->FramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, state->shadow.name, 0,
+                                    (GLint)l);
         if (l == 0 && gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-            return parian_fail(state->device.env, PARIAN_E_DEVICE, "this OpenGL cannot draw %u shadow maps of %u texels",
+            return parian_fail(state->device.env, PARIAN_E_DEVICE,
+                               "this OpenGL cannot draw %u shadow maps of %u texels",
                                state->shadow.layers, state->shadow.width);
         }
         gl->ClearBufferfv(GL_DEPTH, 0, &farthest);

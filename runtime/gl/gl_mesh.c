@@ -16,7 +16,8 @@ static void unroll_body(const parian_body *body, mesh_corner *corner)
 {
     for (uint32_t t = 0; t < body->triangle_count; t++) {
         for (int k = 0; k < 3; k++, corner++) {
-            memcpy(corner->position, body->vertex_position[body->triangle[t][k]], sizeof corner->position);
+            memcpy(corner->position, body->vertex_position[body->triangle[t][k]],
+                   sizeof corner->position);
             memcpy(corner->normal, body->corner_normal[t][k], sizeof corner->normal);
             memcpy(corner->uv, body->corner_uv[t][k], sizeof corner->uv);
             parian_chart_color(body->triangle_chart[t], corner->chart);
@@ -29,7 +30,8 @@ static void unroll_surrounding(const parian_surrounding *piece, mesh_corner *cor
     memset(corner, 0, (size_t)3 * piece->triangle_count * sizeof *corner);
     for (uint32_t t = 0; t < piece->triangle_count; t++) {
         for (int k = 0; k < 3; k++, corner++) {
-            memcpy(corner->position, piece->vertex_position[piece->triangle[t][k]], sizeof corner->position);
+            memcpy(corner->position, piece->vertex_position[piece->triangle[t][k]],
+                   sizeof corner->position);
             memcpy(corner->normal, piece->corner_normal[t][k], sizeof corner->normal);
         }
     }
@@ -46,13 +48,13 @@ static void describe(gl_device *device)
                        {3, offsetof(mesh_corner, chart)}};
     for (GLuint a = 0; a < 4; a++) {
         device->gl.EnableVertexAttribArray(a);
-        device->gl.VertexAttribPointer(a, attributes[a].components, GL_FLOAT, GL_FALSE, sizeof(mesh_corner),
-                                       (const void *)attributes[a].offset);
+        device->gl.VertexAttribPointer(a, attributes[a].components, GL_FLOAT, GL_FALSE,
+                                       sizeof(mesh_corner), (const void *)attributes[a].offset);
     }
 }
 
-parian_result gl_mesh_create(gl_device *device, const parian_body *body, const parian_surrounding *surrounding,
-                             gl_mesh *mesh)
+parian_result gl_mesh_create(gl_device *device, const parian_body *body,
+                             const parian_surrounding *surrounding, gl_mesh *mesh)
 {
     uint32_t triangles = body ? body->triangle_count : surrounding->triangle_count;
     uint64_t size = (uint64_t)triangles * 3 * sizeof(mesh_corner);

@@ -1,5 +1,5 @@
-/* gl_operator.c - a sparse operator as textures: rows cut into segments of a few hundred factors, so that
- * no fragment has to walk a long row alone.
+/* gl_operator.c - a sparse operator as textures: rows cut into segments of a few hundred factors,
+ * so that no fragment has to walk a long row alone.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -29,7 +29,8 @@ static uint32_t cut_rows(const parian_operator *op, segment_entry *segment, uint
                 factors += op->run_count[run++];
             }
             if (segment) {
-                segment[count] = (segment_entry){first, run - first, (uint32_t)op->run_factor[first], 0};
+                segment[count] =
+                    (segment_entry){first, run - first, (uint32_t)op->run_factor[first], 0};
             }
             count++;
         }
@@ -60,7 +61,8 @@ static void copy_scales(const void *context, uint64_t first, uint64_t count, voi
     }
 }
 
-static parian_result create_segments(gl_device *device, const parian_operator *op, gl_operator *made)
+static parian_result create_segments(gl_device *device, const parian_operator *op,
+                                     gl_operator *made)
 {
     segment_entry *segment = NULL;
     uint32_t *row_segment = NULL;
@@ -72,7 +74,8 @@ static parian_result create_segments(gl_device *device, const parian_operator *o
         goto done;
     }
     cut_rows(op, segment, row_segment);
-    result = gl_array_upload(device, GL_FORMAT_RGBA32UI, made->segment_count, segment, &made->segment);
+    result =
+        gl_array_upload(device, GL_FORMAT_RGBA32UI, made->segment_count, segment, &made->segment);
     if (result == PARIAN_OK) {
         result = gl_array_upload(device, GL_FORMAT_R32UI, (uint64_t)op->row_count + 1, row_segment,
                                  &made->row_segment);
@@ -86,20 +89,25 @@ done:
 parian_result gl_operator_create(gl_device *device, const parian_operator *op, gl_operator *made)
 {
     if (op->factor_total > UINT32_MAX) {
-        return parian_fail(device->env, PARIAN_E_UNSUPPORTED, "an operator of %llu factors, at most 2^32 are possible",
+        return parian_fail(device->env, PARIAN_E_UNSUPPORTED,
+                           "an operator of %llu factors, at most 2^32 are possible",
                            (unsigned long long)op->factor_total);
     }
     parian_result result = create_segments(device, op, made);
     if (result == PARIAN_OK) {
-        result = gl_array_create(device, GL_FORMAT_RG32UI, op->run_total, copy_runs, op, &made->run);
+        result =
+            gl_array_create(device, GL_FORMAT_RG32UI, op->run_total, copy_runs, op, &made->run);
     }
     if (result == PARIAN_OK) {
-        result = gl_array_upload(device, GL_FORMAT_RGB16F, op->factor_total, op->factor, &made->factor);
+        result =
+            gl_array_upload(device, GL_FORMAT_RGB16F, op->factor_total, op->factor, &made->factor);
     }
     if (result == PARIAN_OK) {
-        result = gl_array_create(device, GL_FORMAT_RGBA32F, op->row_count, copy_scales, op, &made->scale);
+        result = gl_array_create(device, GL_FORMAT_RGBA32F, op->row_count, copy_scales, op,
+                                 &made->scale);
     }
-    return result == PARIAN_OK ? gl_vector_create(device, made->segment_count, &made->partial) : result;
+    return result == PARIAN_OK ? gl_vector_create(device, made->segment_count, &made->partial)
+                               : result;
 }
 
 void gl_operator_destroy(gl_device *device, gl_operator *made)

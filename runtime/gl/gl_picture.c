@@ -43,13 +43,16 @@ static parian_result create_reductions(gl_device *device, gl_picture *made)
     if (result == PARIAN_OK) {
         result = gl_texture_create(device, GL_FORMAT_RGBA32F, 1, 1, NULL, &made->mean);
     }
-    return result == PARIAN_OK ? gl_texture_create(device, GL_FORMAT_RGBA32F, 1, 1, NULL, &made->logs) : result;
+    return result == PARIAN_OK
+               ? gl_texture_create(device, GL_FORMAT_RGBA32F, 1, 1, NULL, &made->logs)
+               : result;
 }
 
 static parian_result create_framebuffer(gl_device *device, gl_picture *made)
 {
     const parian_gl_api *gl = &device->gl;
-    parian_result result = gl_memory_add(device, (uint64_t)made->samples.width * made->samples.height * 4);
+    parian_result result =
+        gl_memory_add(device, (uint64_t)made->samples.width * made->samples.height * 4);
     if (result != PARIAN_OK) {
         return result;
     }
@@ -60,10 +63,12 @@ static parian_result create_framebuffer(gl_device *device, gl_picture *made)
     gl->RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, (GLsizei)made->samples.width,
                             (GLsizei)made->samples.height);
     gl->BindFramebuffer(GL_FRAMEBUFFER, made->framebuffer);
-    gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, made->samples.name, 0);
+    gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
+                             made->samples.name, 0);
     gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, made->depth);
     if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-        return parian_fail(device->env, PARIAN_E_DEVICE, "this OpenGL cannot draw to %u x %u floats with depth",
+        return parian_fail(device->env, PARIAN_E_DEVICE,
+                           "this OpenGL cannot draw to %u x %u floats with depth",
                            made->samples.width, made->samples.height);
     }
     return PARIAN_OK;
@@ -155,7 +160,8 @@ void gl_shade_run(parian_renderer *renderer, const parian_draw_desc *desc)
     const GLenum buffer = GL_COLOR_ATTACHMENT0;
     gl->BindFramebuffer(GL_FRAMEBUFFER, state->picture.framebuffer);
     gl->DrawBuffers(1, &buffer);
-    gl->Viewport(0, 0, (GLsizei)state->picture.samples.width, (GLsizei)state->picture.samples.height);
+    gl->Viewport(0, 0, (GLsizei)state->picture.samples.width,
+                 (GLsizei)state->picture.samples.height);
     clear_samples(renderer);
     gl->Enable(GL_DEPTH_TEST);
     for (uint32_t b = 0; b < data->body_count; b++) {
@@ -184,7 +190,8 @@ static void reduce(gl_device *device, gl_picture *picture, int mode, const gl_te
 {
     const gl_texture *from = &picture->picture;
     for (int i = 0; i < picture->reduction_count; i++) {
-        const gl_texture *target = i + 1 < picture->reduction_count ? &picture->reduction[i] : result;
+        const gl_texture *target =
+            i + 1 < picture->reduction_count ? &picture->reduction[i] : result;
         gl_pass_begin(device, GL_PROGRAM_LUMINANCE, &target, 1);
         gl_pass_texture(device, "u_from", from);
         gl_pass_texture(device, "u_mean", mode == 1 ? &picture->mean : from);

@@ -1,4 +1,5 @@
-/* gl_program.c - builds the shader programs: one body of GLSL for each pass, for OpenGL and OpenGL ES alike.
+/* gl_program.c - builds the shader programs: one body of GLSL for each pass, for OpenGL and OpenGL
+ * ES alike.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -29,10 +30,11 @@ static const program_parts parts_of[GL_PROGRAM_COUNT] = {
 };
 
 static const char prologue_core[] = "#version 330 core\n";
-static const char prologue_es[] = "#version 300 es\n"
-                                  "precision highp float;\nprecision highp int;\n"
-                                  "precision highp sampler2D;\nprecision highp usampler2D;\n"
-                                  "precision highp sampler2DArray;\nprecision highp usampler2DArray;\n";
+static const char prologue_es[] =
+    "#version 300 es\n"
+    "precision highp float;\nprecision highp int;\n"
+    "precision highp sampler2D;\nprecision highp usampler2D;\n"
+    "precision highp sampler2DArray;\nprecision highp usampler2DArray;\n";
 
 static const char *find_text(const char *name)
 {
@@ -83,8 +85,8 @@ static bool build(gl_device *device, gl_program_id id)
         gl->GetProgramiv(device->program[id], GL_LINK_STATUS, &done);
         if (!done) {
             gl->GetProgramInfoLog(device->program[id], sizeof log, NULL, log);
-            parian_log(device->env, PARIAN_LOG_ERROR, "program %s does not link: %s", parts_of[id].fragment,
-                       log);
+            parian_log(device->env, PARIAN_LOG_ERROR, "program %s does not link: %s",
+                       parts_of[id].fragment, log);
         }
     }
     if (vertex) {

@@ -23,14 +23,15 @@ typedef struct gl_picture {
 
 typedef struct gl_state {
     gl_device device;
-    gl_body *body;              /* [body_count] */
-    gl_mesh *surrounding;       /* [surrounding_count] */
+    gl_body *body;        /* [body_count] */
+    gl_mesh *surrounding; /* [surrounding_count] */
     gl_texture light, layer, image, shadow;
     GLuint shadow_framebuffer;
     gl_picture picture;
 } gl_state;
 
-/* gl_light.c: upload the light tables and pictures; draw the shadow maps; set what shaders/lights.glsl reads. */
+/* gl_light.c: upload the light tables and pictures; draw the shadow maps; set what
+ * shaders/lights.glsl reads. */
 parian_result gl_lights_upload(parian_renderer *renderer);
 parian_result gl_shadow_run(parian_renderer *renderer);
 void gl_pass_lights(const parian_renderer *renderer);

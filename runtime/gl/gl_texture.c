@@ -27,10 +27,11 @@ static const format_traits traits_of[GL_FORMAT_COUNT] = {
 parian_result gl_memory_add(gl_device *device, uint64_t size)
 {
     if (size > device->memory_budget || device->memory > device->memory_budget - size) {
-        return parian_fail(device->env, PARIAN_E_NOMEM,
-                           "%llu bytes more would exceed the budget of %llu bytes of GL memory (%llu in use)",
-                           (unsigned long long)size, (unsigned long long)device->memory_budget,
-                           (unsigned long long)device->memory);
+        return parian_fail(
+            device->env, PARIAN_E_NOMEM,
+            "%llu bytes more would exceed the budget of %llu bytes of GL memory (%llu in use)",
+            (unsigned long long)size, (unsigned long long)device->memory_budget,
+            (unsigned long long)device->memory);
     }
     device->memory += size;
     return PARIAN_OK;
@@ -40,7 +41,8 @@ parian_result gl_memory_add(gl_device *device, uint64_t size)
 static parian_result begin_texture(gl_device *device, GLenum target, gl_texture *texture)
 {
     const parian_gl_api *gl = &device->gl;
-    uint64_t size = (uint64_t)texture->width * texture->height * texture->layers * traits_of[texture->format].size;
+    uint64_t size = (uint64_t)texture->width * texture->height * texture->layers *
+                    traits_of[texture->format].size;
     parian_result result = gl_memory_add(device, size);
     if (result != PARIAN_OK) {
         return result;
@@ -63,23 +65,26 @@ static parian_result end_texture(gl_device *device, const gl_texture *texture)
 {
     GLenum error = device->gl.GetError();
     if (error != GL_NO_ERROR) {
-        return parian_fail(device->env, error == GL_OUT_OF_MEMORY ? PARIAN_E_NOMEM : PARIAN_E_DEVICE,
-                           "OpenGL error 0x%04X for a texture of %u x %u x %u", error, texture->width,
-                           texture->height, texture->layers);
+        return parian_fail(device->env,
+                           error == GL_OUT_OF_MEMORY ? PARIAN_E_NOMEM : PARIAN_E_DEVICE,
+                           "OpenGL error 0x%04X for a texture of %u x %u x %u", error,
+                           texture->width, texture->height, texture->layers);
     }
     return PARIAN_OK;
 }
 
-static parian_result refuse_size(gl_device *device, uint64_t width, uint64_t height, uint64_t layers)
+static parian_result refuse_size(gl_device *device, uint64_t width, uint64_t height,
+                                 uint64_t layers)
 {
-    return parian_fail(device->env, PARIAN_E_UNSUPPORTED,
-                       "a texture of %llu x %llu x %llu is needed, this OpenGL has at most %d x %d x %d",
-                       (unsigned long long)width, (unsigned long long)height, (unsigned long long)layers,
-                       device->texture_max, device->texture_max, device->layers_max);
+    return parian_fail(
+        device->env, PARIAN_E_UNSUPPORTED,
+        "a texture of %llu x %llu x %llu is needed, this OpenGL has at most %d x %d x %d",
+        (unsigned long long)width, (unsigned long long)height, (unsigned long long)layers,
+        device->texture_max, device->texture_max, device->layers_max);
 }
 
-parian_result gl_texture_create(gl_device *device, gl_format format, uint32_t width, uint32_t height,
-                                const void *data, gl_texture *texture)
+parian_result gl_texture_create(gl_device *device, gl_format format, uint32_t width,
+                                uint32_t height, const void *data, gl_texture *texture)
 {
     const format_traits *traits = &traits_of[format];
     *texture = (gl_texture){.format = format, .width = width, .height = height, .layers = 1};
@@ -90,8 +95,8 @@ parian_result gl_texture_create(gl_device *device, gl_format format, uint32_t wi
     if (result != PARIAN_OK) {
         return result;
     }
-    device->gl.TexImage2D(GL_TEXTURE_2D, 0, traits->internal, (GLsizei)width, (GLsizei)height, 0, traits->format,
-                          traits->type, data);
+    device->gl.TexImage2D(GL_TEXTURE_2D, 0, traits->internal, (GLsizei)width, (GLsizei)height, 0,
+                          traits->format, traits->type, data);
     return end_texture(device, texture);
 }
 
@@ -101,26 +106,28 @@ parian_result gl_vector_create(gl_device *device, uint64_t count, gl_texture *te
     if (rows > (uint64_t)device->texture_max) {
         return refuse_size(device, GL_VECTOR_WIDTH, rows, 1);
     }
-    return gl_texture_create(device, GL_FORMAT_RGBA32F, GL_VECTOR_WIDTH, (uint32_t)rows, NULL, texture);
+    return gl_texture_create(device, GL_FORMAT_RGBA32F, GL_VECTOR_WIDTH, (uint32_t)rows, NULL,
+                             texture);
 }
 
 /* Fill one layer: whole rows, then what is left of the last one. */
-static void upload_layer(gl_device *device, const format_traits *traits, uint32_t layer, uint64_t count,
-                         const uint8_t *data)
+static void upload_layer(gl_device *device, const format_traits *traits, uint32_t layer,
+                         uint64_t count, const uint8_t *data)
 {
     GLsizei rows = (GLsizei)(count / GL_ARRAY_WIDTH), rest = (GLsizei)(count % GL_ARRAY_WIDTH);
     if (rows > 0) {
-        device->gl.TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)layer, GL_ARRAY_WIDTH, rows, 1,
-                                 traits->format, traits->type, data);
+        device->gl.TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)layer, GL_ARRAY_WIDTH, rows,
+                                 1, traits->format, traits->type, data);
     }
     if (rest > 0) {
-        device->gl.TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, rows, (GLint)layer, rest, 1, 1, traits->format,
-                                 traits->type, data + (size_t)rows * GL_ARRAY_WIDTH * traits->size);
+        device->gl.TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, rows, (GLint)layer, rest, 1, 1,
+                                 traits->format, traits->type,
+                                 data + (size_t)rows * GL_ARRAY_WIDTH * traits->size);
     }
 }
 
-parian_result gl_array_create(gl_device *device, gl_format format, uint64_t count, gl_array_source source,
-                              const void *context, gl_texture *texture)
+parian_result gl_array_create(gl_device *device, gl_format format, uint64_t count,
+                              gl_array_source source, const void *context, gl_texture *texture)
 {
     const format_traits *traits = &traits_of[format];
     const uint64_t layer_count = (uint64_t)GL_ARRAY_WIDTH * GL_ARRAY_HEIGHT;
@@ -138,8 +145,9 @@ parian_result gl_array_create(gl_device *device, gl_format format, uint64_t coun
     if (result != PARIAN_OK) {
         return result;
     }
-    device->gl.TexImage3D(GL_TEXTURE_2D_ARRAY, 0, traits->internal, GL_ARRAY_WIDTH, (GLsizei)texture->height,
-                          (GLsizei)layers, 0, traits->format, traits->type, NULL);
+    device->gl.TexImage3D(GL_TEXTURE_2D_ARRAY, 0, traits->internal, GL_ARRAY_WIDTH,
+                          (GLsizei)texture->height, (GLsizei)layers, 0, traits->format,
+                          traits->type, NULL);
     part = parian_alloc(device->env, count < layer_count ? count : layer_count, traits->size);
     if (!part) {
         return parian_fail(device->env, PARIAN_E_NOMEM, "no memory to upload %llu elements",
@@ -172,10 +180,12 @@ parian_result gl_array_upload(gl_device *device, gl_format format, uint64_t coun
     return gl_array_create(device, format, count, copy_memory, &source, texture);
 }
 
-parian_result gl_depth_create(gl_device *device, uint32_t size, uint32_t layers, gl_texture *texture)
+parian_result gl_depth_create(gl_device *device, uint32_t size, uint32_t layers,
+                              gl_texture *texture)
 {
     const format_traits *traits = &traits_of[GL_FORMAT_DEPTH32F];
-    *texture = (gl_texture){.format = GL_FORMAT_DEPTH32F, .width = size, .height = size, .layers = layers};
+    *texture =
+        (gl_texture){.format = GL_FORMAT_DEPTH32F, .width = size, .height = size, .layers = layers};
     if (size > (uint32_t)device->texture_max || layers > (uint32_t)device->layers_max) {
         return refuse_size(device, size, size, layers);
     }
@@ -207,5 +217,6 @@ void gl_texture_read(gl_device *device, const gl_texture *texture, void *pixels)
     gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, 0, 0);
     gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT2, GL_TEXTURE_2D, 0, 0);
     gl->ReadBuffer(GL_COLOR_ATTACHMENT0);
-    gl->ReadPixels(0, 0, (GLsizei)texture->width, (GLsizei)texture->height, traits->format, traits->type, pixels);
+    gl->ReadPixels(0, 0, (GLsizei)texture->width, (GLsizei)texture->height, traits->format,
+                   traits->type, pixels);
 }

@@ -1,4 +1,5 @@
-/* gl_transfer.c - the passes from lights to scattered radiosity, all gathers. C: cpu/cpu_lights.c, cpu_transfer.c.
+/* gl_transfer.c - the passes from lights to scattered radiosity, all gathers. C: cpu/cpu_lights.c,
+ * cpu_transfer.c.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -53,7 +54,8 @@ static void clear_register(gl_device *device, const gl_texture *target)
     device->gl.ClearBufferfv(GL_COLOR, 0, zero);
 }
 
-static void apply_operator(gl_device *device, const parian_operator *op, gl_body *body, gl_operator *made)
+static void apply_operator(gl_device *device, const parian_operator *op, gl_body *body,
+                           gl_operator *made)
 {
     const gl_texture *partial = &made->partial, *sum = &body->spare[op->target_register];
     gl_pass_begin(device, GL_PROGRAM_SEGMENT, &partial, 1);
@@ -122,7 +124,8 @@ void gl_gutter_run(parian_renderer *renderer)
     gl_device *device = &state->device;
     for (uint32_t b = 0; b < renderer->scene->data.body_count; b++) {
         gl_body *body = &state->body[b];
-        const gl_texture *targets[3] = {&body->shown_irradiance, &body->shown_local, &body->shown_global};
+        const gl_texture *targets[3] = {&body->shown_irradiance, &body->shown_local,
+                                        &body->shown_global};
         gl_pass_begin(device, GL_PROGRAM_GUTTER, targets, 3);
         gl_pass_texture(device, "u_info", &body->info);
         gl_pass_texture(device, "u_source", &body->gutter_source);

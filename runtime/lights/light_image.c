@@ -1,4 +1,5 @@
-/* light_image.c - mip levels of projected pictures, and spherical harmonics and probes of environments.
+/* light_image.c - mip levels of projected pictures, and spherical harmonics and probes of
+ * environments.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -34,8 +35,8 @@ uint64_t parian_image_pixel_total(uint32_t width, uint32_t height)
 }
 
 /* Mean of the source pixels under [x0, x1) x [y0, y1), with the parts of pixels at its rim. */
-static void mean_box(const float (*source)[4], uint32_t width, uint32_t height, double x0, double x1,
-                     double y0, double y1, float to[4])
+static void mean_box(const float (*source)[4], uint32_t width, uint32_t height, double x0,
+                     double x1, double y0, double y1, float to[4])
 {
     double sum[3] = {0}, weight_sum = 0;
     for (uint32_t y = (uint32_t)y0; y < height && y < y1; y++) {
@@ -148,8 +149,8 @@ static void project_cells(const parian_light *light, uint32_t width, uint32_t he
             sky_direction((x + 0.5) / width, (y + 0.5) / height, light->rotation_deg * M_PI / 180.0,
                           direction);
             for (int c = 0; c < 3; c++) {
-                radiance[c] =
-                    light->color[c] * (image->pixel ? image->pixel[(size_t)y * width + x][c] : 1.0f);
+                radiance[c] = light->color[c] *
+                              (image->pixel ? image->pixel[(size_t)y * width + x][c] : 1.0f);
             }
             add_sky(direction, radiance, solid_angle, sh, spiral, probe);
         }

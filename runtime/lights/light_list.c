@@ -7,10 +7,12 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/small_maths.h"
 #include "lights/light_image.h"
 #include "vec3.h"
 
-static const char *const light_type_names[] = {"point", "directional", "spot", "rect", "environment"};
+static const char *const light_type_names[] = {"point", "directional", "spot", "rect",
+                                               "environment"};
 
 static bool all_finite(const float v[3])
 {
@@ -48,7 +50,8 @@ static const char *find_fault(const parian_light *light)
             return "colour is not within 0 to 1e12";
         }
     }
-    bool placed = light->type != PARIAN_LIGHT_DIRECTIONAL && light->type != PARIAN_LIGHT_ENVIRONMENT;
+    bool placed =
+        light->type != PARIAN_LIGHT_DIRECTIONAL && light->type != PARIAN_LIGHT_ENVIRONMENT;
     if (placed && (!all_finite(light->position) || vec3_length(light->position) > 1e9f)) {
         return "position is not finite or farther than 1e9 m";
     }
@@ -57,8 +60,8 @@ static const char *find_fault(const parian_light *light)
         return "direction is not finite or has no length";
     }
     if (light->type == PARIAN_LIGHT_SPOT &&
-        !(light->inner_deg >= 0.0f && light->inner_deg <= light->outer_deg && light->outer_deg > 0.0f &&
-          light->outer_deg < 90.0f && all_finite(light->up))) {
+        !(light->inner_deg >= 0.0f && light->inner_deg <= light->outer_deg &&
+          light->outer_deg > 0.0f && light->outer_deg < 90.0f && all_finite(light->up))) {
         return "cone is not 0 <= inner <= outer < 90 degrees";
     }
     if (light->type == PARIAN_LIGHT_RECT) {
@@ -131,26 +134,31 @@ static void make_simple(const parian_light *light, parian_light_sample *sample)
     }
 }
 
+/* Gauss-Legendre nodes: the sum over patches is exact to a few per mille down to distances of a
+ * side. */
 static void make_rect(const parian_light *light, parian_light_sample *samples)
 {
-    const int n = PARIAN_RECT_GRID;
+    double node[PARIAN_RECT_GRID], weight[PARIAN_RECT_GRID];
     float normal[3];
     vec3_cross(normal, light->axis_u, light->axis_v);
     float area = 4.0f * vec3_length(normal);
     vec3_normalize(normal);
-    for (int i = 0; i < n * n; i++) {
+    parian_gauss_legendre(PARIAN_RECT_GRID, node, weight);
+    for (int i = 0; i < PARIAN_RECT_GRID * PARIAN_RECT_GRID; i++) {
         parian_light_sample *sample = &samples[i];
+        int u = i % PARIAN_RECT_GRID, v = i / PARIAN_RECT_GRID;
         sample->kind = PARIAN_SAMPLE_PATCH;
         vec3_copy(sample->position, light->position);
-        vec3_add_scaled(sample->position, light->axis_u, (2.0f * (float)(i % n) + 1.0f) / n - 1.0f);
-        vec3_add_scaled(sample->position, light->axis_v, (2.0f * (float)(i / n) + 1.0f) / n - 1.0f);
+        vec3_add_scaled(sample->position, light->axis_u, (float)(2.0 * node[u] - 1.0));
+        vec3_add_scaled(sample->position, light->axis_v, (float)(2.0 * node[v] - 1.0));
         vec3_copy(sample->direction, normal);
         vec3_copy(sample->color, light->color);
-        vec3_scale(sample->color, area / (float)(n * n));
+        vec3_scale(sample->color, area * (float)(weight[u] * weight[v]));
     }
 }
 
-static void add_image(parian_light_list *list, const parian_light *light, parian_light_sample *sample)
+static void add_image(parian_light_list *list, const parian_light *light,
+                      parian_light_sample *sample)
 {
     if (light->type != PARIAN_LIGHT_SPOT || !light->image.pixel) {
         return;
@@ -181,8 +189,8 @@ static void make_samples(parian_light_list *list, const parian_light *lights, si
     }
 }
 
-parian_result parian_light_list_build(const parian_env *env, const parian_light *lights, size_t count,
-                                      parian_light_list *list)
+parian_result parian_light_list_build(const parian_env *env, const parian_light *lights,
+                                      size_t count, parian_light_list *list)
 {
     parian_light_list made = {0};
     size_t samples = 0;
@@ -198,9 +206,10 @@ parian_result parian_light_list_build(const parian_env *env, const parian_light 
         }
     }
     if (samples > PARIAN_LIGHT_MAX || pixels > PARIAN_IMAGE_PIXEL_MAX) {
-        return parian_fail(env, PARIAN_E_LIMIT,
-                           "lights need %zu samples and %llu picture pixels, at most %d and %d are possible",
-                           samples, (unsigned long long)pixels, PARIAN_LIGHT_MAX, PARIAN_IMAGE_PIXEL_MAX);
+        return parian_fail(
+            env, PARIAN_E_LIMIT,
+            "lights need %zu samples and %llu picture pixels, at most %d and %d are possible",
+            samples, (unsigned long long)pixels, PARIAN_LIGHT_MAX, PARIAN_IMAGE_PIXEL_MAX);
     }
     if (!PARIAN_NEW0(env, made.sample, samples) || !PARIAN_NEW(env, made.image, (size_t)pixels)) {
         parian_light_list_free(env, &made);
@@ -227,7 +236,8 @@ static void put(float to[4], const float v[3], float w)
     to[3] = w;
 }
 
-void parian_light_list_tables(const parian_light_list *list, float (*samples)[4], float (*layers)[4])
+void parian_light_list_tables(const parian_light_list *list, float (*samples)[4],
+                              float (*layers)[4])
 {
     memset(samples, 0, (size_t)list->sample_count * PARIAN_LIGHT_ROW * sizeof *samples);
     for (uint32_t i = 0; i < list->sample_count; i++) {

@@ -1,4 +1,5 @@
-/* light_list.h - the lights of a renderer as samples: what both the shaders and the C evaluation read.
+/* light_list.h - the lights of a renderer as samples: what both the shaders and the C evaluation
+ * read.
  *
  * A light becomes one sample (point, directional, spot) or several (a rectangle is a grid of small
  * emitters; an environment is its nine spherical-harmonic coefficients, which give the unshadowed
@@ -22,30 +23,31 @@ typedef enum parian_sample_kind {
     PARIAN_SAMPLE_DIRECTIONAL = 1,
     PARIAN_SAMPLE_SPOT = 2,
     PARIAN_SAMPLE_PATCH = 3, /* small piece of a rectangle: a point with a cosine */
-    PARIAN_SAMPLE_PROBE = 4  /* direction from which an environment shines; tells visibility alone */
+    PARIAN_SAMPLE_PROBE = 4 /* direction from which an environment shines; tells visibility alone */
 } parian_sample_kind;
 
 enum {
-    PARIAN_RECT_GRID = 4,          /* a rectangle is cut into 4 x 4 patches */
+    PARIAN_RECT_GRID = 4, /* a rectangle is cut into 4 x 4 patches */
     PARIAN_ENVIRONMENT_PROBES = 32,
     PARIAN_SH_COUNT = 9,
-    PARIAN_LIGHT_MAX = 256,        /* lights, and samples, of one renderer */
+    PARIAN_LIGHT_MAX = 256,          /* lights, and samples, of one renderer */
     PARIAN_IMAGE_PIXEL_MAX = 1 << 24 /* of all projected pictures with their mip levels */
 };
 
 typedef struct parian_light_sample {
     parian_sample_kind kind;
     float position[3];
-    float direction[3]; /* unit, in which the light travels */
+    float direction[3];    /* unit, in which the light travels */
     float right[3], up[3]; /* unit, of the projected picture */
-    float color[3];     /* W/sr, or W/m^2 for directions */
+    float color[3];        /* W/sr, or W/m^2 for directions */
     float cos_inner, cos_outer, tan_outer;
     uint32_t image_offset, image_width, image_height, image_levels; /* levels 0: none */
     uint32_t layer_first, layer_count; /* shadow maps, tried in this order */
 } parian_light_sample;
 
-/* One shadow map. For a point p, with p1 = (p, 1): x = row[0].p1, y = row[1].p1, depth = row[2].p1 (0 at
- * the near plane, 1 at the far plane, linear in space), w = row[3].p1; it falls on (x/w, y/w) of [-1, 1]^2. */
+/* One shadow map. For a point p, with p1 = (p, 1): x = row[0].p1, y = row[1].p1, depth = row[2].p1
+ * (0 at the near plane, 1 at the far plane, linear in space), w = row[3].p1; it falls on (x/w, y/w)
+ * of [-1, 1]^2. */
 typedef struct parian_shadow_layer {
     float row[4][4];
     float texel_scale; /* side of a shadow texel in metres is texel_scale * w */
@@ -64,10 +66,11 @@ typedef struct parian_light_list {
     uint32_t layer_count, shadow_size;
 } parian_light_list;
 
-/* Check the lights and turn them into samples; pictures are copied. Shadow layers are not made here.
- * Errors: PARIAN_E_ARGUMENT (light index and what is wrong), PARIAN_E_NOMEM, PARIAN_E_LIMIT. */
-parian_result parian_light_list_build(const parian_env *env, const parian_light *lights, size_t count,
-                                      parian_light_list *list);
+/* Check the lights and turn them into samples; pictures are copied. Shadow layers are not made
+ * here. Errors: PARIAN_E_ARGUMENT (light index and what is wrong), PARIAN_E_NOMEM, PARIAN_E_LIMIT.
+ */
+parian_result parian_light_list_build(const parian_env *env, const parian_light *lights,
+                                      size_t count, parian_light_list *list);
 void parian_light_list_free(const parian_env *env, parian_light_list *list);
 
 /* A ball in world space. */
@@ -76,15 +79,18 @@ typedef struct parian_ball {
 } parian_ball;
 
 /* Fit shadow maps: one that covers the bodies as tightly as possible, and one for everything where
- * there are surroundings; six for a light that sits inside. corners: the box of everything that casts. */
-parian_result parian_shadow_fit(const parian_env *env, parian_light_list *list, uint32_t shadow_size,
-                                uint64_t memory_max, const parian_ball *bodies, const parian_ball *everything,
+ * there are surroundings; six for a light that sits inside. corners: the box of everything that
+ * casts. */
+parian_result parian_shadow_fit(const parian_env *env, parian_light_list *list,
+                                uint32_t shadow_size, uint64_t memory_max,
+                                const parian_ball *bodies, const parian_ball *everything,
                                 bool has_surroundings, const float lower[3], const float upper[3]);
 
-/* Tables as the shaders read them: PARIAN_LIGHT_ROW float[4] for each sample, PARIAN_LAYER_ROW for each
- * layer. */
+/* Tables as the shaders read them: PARIAN_LIGHT_ROW float[4] for each sample, PARIAN_LAYER_ROW for
+ * each layer. */
 enum { PARIAN_LIGHT_ROW = 8, PARIAN_LAYER_ROW = 8 };
-void parian_light_list_tables(const parian_light_list *list, float (*samples)[4], float (*layers)[4]);
+void parian_light_list_tables(const parian_light_list *list, float (*samples)[4],
+                              float (*layers)[4]);
 
 /* Mip levels of a picture: dimensions of a level, and pixels of all levels together. */
 uint32_t parian_image_level_side(uint32_t side, uint32_t level);

@@ -1,4 +1,5 @@
-/* shadow_fit.c - places shadow maps: projections that cover the bodies, and everything, from each light.
+/* shadow_fit.c - places shadow maps: projections that cover the bodies, and everything, from each
+ * light.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -16,7 +17,8 @@ typedef struct fit_scene {
     float extent; /* diagonal of the box */
 } fit_scene;
 
-static void set_row(float row[4], const float axis[3], const float origin[3], float scale, float shift)
+static void set_row(float row[4], const float axis[3], const float origin[3], float scale,
+                    float shift)
 {
     vec3_copy(row, axis);
     vec3_scale(row, scale);
@@ -24,8 +26,8 @@ static void set_row(float row[4], const float axis[3], const float origin[3], fl
 }
 
 /* Smallest and largest distance of the box along an axis from an origin. */
-static void box_range(const fit_scene *scene, const float axis[3], const float origin[3], float *least,
-                      float *most)
+static void box_range(const fit_scene *scene, const float axis[3], const float origin[3],
+                      float *least, float *most)
 {
     *least = 1e30f;
     *most = -1e30f;
@@ -82,7 +84,8 @@ static void fit_pyramid(const fit_scene *scene, const float position[3], const f
     layer->perspective = true;
 }
 
-static uint32_t fit_cube(const fit_scene *scene, const float position[3], parian_shadow_layer *layers)
+static uint32_t fit_cube(const fit_scene *scene, const float position[3],
+                         parian_shadow_layer *layers)
 {
     for (int face = 0; face < 6; face++) {
         float forward[3] = {0}, up[3] = {0};
@@ -93,10 +96,10 @@ static uint32_t fit_cube(const fit_scene *scene, const float position[3], parian
     return 6;
 }
 
-/* Light from a position on a ball: one pyramid from outside, a cube of six from inside. A cone that is
- * narrower than the ball (cos_outer, 0 for none) is covered itself. */
-static uint32_t fit_ball(const fit_scene *scene, const parian_light_sample *sample, const parian_ball *ball,
-                         parian_shadow_layer *layers)
+/* Light from a position on a ball: one pyramid from outside, a cube of six from inside. A cone that
+ * is narrower than the ball (cos_outer, 0 for none) is covered itself. */
+static uint32_t fit_ball(const fit_scene *scene, const parian_light_sample *sample,
+                         const parian_ball *ball, parian_shadow_layer *layers)
 {
     const float up[3] = {0.0f, 1.0f, 0.0f};
     float forward[3];
@@ -107,7 +110,8 @@ static uint32_t fit_ball(const fit_scene *scene, const parian_light_sample *samp
     if (outside) {
         tangent = ball->radius / sqrtf(distance * distance - ball->radius * ball->radius);
     }
-    bool narrow = sample->kind == PARIAN_SAMPLE_SPOT && sample->tan_outer < (outside ? tangent : 4.0f);
+    bool narrow =
+        sample->kind == PARIAN_SAMPLE_SPOT && sample->tan_outer < (outside ? tangent : 4.0f);
     if (narrow) {
         fit_pyramid(scene, sample->position, sample->direction, up, sample->tan_outer, layers);
         return 1;
@@ -161,8 +165,9 @@ static uint32_t fit_all(parian_light_list *list, const fit_scene *scene, const p
     return total;
 }
 
-parian_result parian_shadow_fit(const parian_env *env, parian_light_list *list, uint32_t shadow_size,
-                                uint64_t memory_max, const parian_ball *bodies, const parian_ball *everything,
+parian_result parian_shadow_fit(const parian_env *env, parian_light_list *list,
+                                uint32_t shadow_size, uint64_t memory_max,
+                                const parian_ball *bodies, const parian_ball *everything,
                                 bool has_surroundings, const float lower[3], const float upper[3])
 {
     float diagonal[3];
@@ -176,7 +181,8 @@ parian_result parian_shadow_fit(const parian_env *env, parian_light_list *list, 
     }
     uint32_t total = fit_all(list, &scene, bodies, second);
     if (total > LAYER_TOTAL_MAX) {
-        return parian_fail(env, PARIAN_E_LIMIT, "lights need %u shadow maps, at most %d are possible", total,
+        return parian_fail(env, PARIAN_E_LIMIT,
+                           "lights need %u shadow maps, at most %d are possible", total,
                            LAYER_TOTAL_MAX);
     }
     scene.size = choose_size(shadow_size, total, memory_max);

@@ -15,9 +15,9 @@ typedef struct parian_feed {
 
 typedef struct parian_restriction {
     uint32_t vertex_count;
-    uint32_t total;       /* 3 texel_count */
-    uint32_t *offset;     /* [vertex_count + 1] */
-    parian_feed *feed;    /* [total] texels of a vertex ascending */
+    uint32_t total;           /* 3 texel_count */
+    uint32_t *offset;         /* [vertex_count + 1] */
+    parian_feed *feed;        /* [total] texels of a vertex ascending */
     parian_half (*weight)[3]; /* [total] w_v of the feed, or NULL where the body has none */
 } parian_restriction;
 

@@ -8,8 +8,8 @@
 #include "core/fresnel.h"
 #include "core/small_maths.h"
 
-/* int P_l(mu) mu F_t(mu) dmu over [0, 1], P_l the Legendre polynomials; midpoint rule. The integrand
- * is smooth but for a bend at one mu, so that 4,096 pieces are good to 1e-6. */
+/* int P_l(mu) mu F_t(mu) dmu over [0, 1], P_l the Legendre polynomials; midpoint rule. The
+ * integrand is smooth but for a bend at one mu, so that 4,096 pieces are good to 1e-6. */
 static double transmit_moment(double eta, int l)
 {
     enum { PIECES = 4096 };
