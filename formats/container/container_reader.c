@@ -74,7 +74,7 @@ static parian_result open_table(parian_reader *made, const parian_reader_limits 
 parian_result parian_reader_open(const parian_env *env, const char *path,
                                  const parian_reader_limits *limits, parian_reader **reader)
 {
-    parian_reader *made;
+    parian_reader *made = NULL;
     parian_result result = create(env, path, &made);
     if (result != PARIAN_OK) {
         return result;
@@ -93,7 +93,7 @@ parian_result parian_reader_open_memory(const parian_env *env, const char *name,
                                         size_t size, const parian_reader_limits *limits,
                                         parian_reader **reader)
 {
-    parian_reader *made;
+    parian_reader *made = NULL;
     parian_result result = create(env, name, &made);
     if (result != PARIAN_OK) {
         return result;

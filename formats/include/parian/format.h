@@ -77,7 +77,7 @@ typedef struct parian_writer parian_writer;
 
 typedef struct parian_writer_desc {
     const char *path;      /* target; the bytes go to a temporary file beside it first */
-    int compression_level; /* zstd level; 0 takes 3 */
+    int compression_level; /* zstd level, 1 to 19; 0 takes 1 */
     bool no_compression;   /* every chunk raw */
 } parian_writer_desc;
 
