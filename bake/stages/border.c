@@ -24,14 +24,21 @@ enum { SLICE = 512, HASH_LOAD = 2 };
 static const float FULL_COVER = 0.999f;
 static const float NORMAL_COSINE_MIN = -0.2f; /* lists reach around an edge of 100 degrees */
 
+/* What the rule across charts needs of a border texel, filed in the order of the hash. */
+typedef struct border_point {
+    float position[3], normal[3];
+    uint32_t chart, texel;
+} border_point;
+
 typedef struct border_job {
     const parian_body *body;
-    int32_t half;            /* of the window */
-    float radius2;           /* m^2 */
-    double cell_size;        /* of the hash grid, metres */
-    uint8_t *supported;      /* [side^2] scratch of the erosion, then: interior */
-    uint32_t *bucket_begin;  /* [bucket_count + 1] into bucket_border */
-    uint32_t *bucket_border; /* [border_count] border ordinals, ascending in a bucket */
+    int32_t half;           /* of the window */
+    float radius2;          /* m^2 */
+    double cell_size;       /* of the hash grid, metres */
+    uint8_t *supported;     /* [side^2] scratch of the erosion, then: interior */
+    uint32_t *chart;        /* [texel_count] */
+    uint32_t *bucket_begin; /* [bucket_count + 1] into point */
+    border_point *point;    /* [border_count] texels ascending in a bucket */
     uint32_t bucket_mask;
     uint32_t border_count;
     uint32_t *border_texel;
@@ -75,10 +82,12 @@ static parian_result find_border(const parian_env *env, border_job *job, const f
     for (uint32_t i = 0; i < body->texel_count; i++) {
         job->border_count += !job->supported[body->texel_index[i]];
     }
-    if (!PARIAN_NEW(env, job->border_texel, job->border_count)) {
+    if (!PARIAN_NEW(env, job->border_texel, job->border_count) ||
+        !PARIAN_NEW(env, job->chart, body->texel_count)) {
         return PARIAN_E_NOMEM;
     }
     for (uint32_t i = 0, next = 0; i < body->texel_count; i++) {
+        job->chart[i] = texel_chart(body, i);
         if (!job->supported[body->texel_index[i]]) {
             job->border_texel[next++] = i;
         }
@@ -127,7 +136,7 @@ static parian_result fill_hash(const parian_env *env, border_job *job)
     }
     job->bucket_mask = bucket_count - 1;
     if (!PARIAN_NEW0(env, job->bucket_begin, (size_t)bucket_count + 2) ||
-        !PARIAN_NEW(env, job->bucket_border, job->border_count)) {
+        !PARIAN_NEW(env, job->point, job->border_count)) {
         return PARIAN_E_NOMEM;
     }
     for (uint32_t b = 0; b < job->border_count; b++) {
@@ -137,7 +146,12 @@ static parian_result fill_hash(const parian_env *env, border_job *job)
         job->bucket_begin[i + 1] += job->bucket_begin[i];
     }
     for (uint32_t b = 0; b < job->border_count; b++) {
-        job->bucket_border[job->bucket_begin[bucket_of_texel(job, job->border_texel[b]) + 1]++] = b;
+        uint32_t texel = job->border_texel[b];
+        border_point *p = &job->point[job->bucket_begin[bucket_of_texel(job, texel) + 1]++];
+        memcpy(p->position, job->body->texel_position[texel], sizeof p->position);
+        memcpy(p->normal, job->body->texel_normal[texel], sizeof p->normal);
+        p->chart = job->chart[texel];
+        p->texel = texel;
     }
     return PARIAN_OK;
 }
@@ -149,11 +163,11 @@ static uint32_t list_window(const border_job *job, uint32_t texel, uint32_t *out
     int32_t side = (int32_t)body->atlas_size, half = job->half;
     int32_t u = (int32_t)(body->texel_index[texel] % body->atlas_size);
     int32_t v = (int32_t)(body->texel_index[texel] / body->atlas_size);
-    uint32_t chart = texel_chart(body, texel), count = 0;
+    uint32_t chart = job->chart[texel], count = 0;
     for (int32_t y = v > half ? v - half : 0; y <= v + half && y < side; y++) {
         for (int32_t x = u > half ? u - half : 0; x <= u + half && x < side; x++) {
             uint32_t other = body->texel_at[(size_t)y * (size_t)side + (size_t)x];
-            if (other != UINT32_MAX && texel_chart(body, other) == chart) {
+            if (other != UINT32_MAX && job->chart[other] == chart) {
                 if (out) {
                     out[count] = other;
                 }
@@ -164,16 +178,13 @@ static uint32_t list_window(const border_job *job, uint32_t texel, uint32_t *out
     return count;
 }
 
-static bool across_charts(const border_job *job, uint32_t texel, uint32_t other)
+static bool across_charts(const border_job *job, uint32_t texel, const border_point *other)
 {
     const parian_body *body = job->body;
-    if (texel_chart(body, other) == texel_chart(body, texel) ||
-        parian_distance2f(body->texel_position[texel], body->texel_position[other]) >
-            job->radius2) {
-        return false;
-    }
-    const float *a = body->texel_normal[texel], *b = body->texel_normal[other];
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > NORMAL_COSINE_MIN;
+    const float *n = body->texel_normal[texel], *m = other->normal;
+    return parian_distance2f(body->texel_position[texel], other->position) <= job->radius2 &&
+           other->chart != job->chart[texel] &&
+           n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > NORMAL_COSINE_MIN;
 }
 
 /* Neighbours of other charts, through the hash. Cells that share a bucket are looked through once.
@@ -197,10 +208,9 @@ static uint32_t list_across(const border_job *job, uint32_t texel, uint32_t *out
         }
         seen[seen_count++] = bucket;
         for (uint32_t i = job->bucket_begin[bucket]; i < job->bucket_begin[bucket + 1]; i++) {
-            uint32_t other = job->border_texel[job->bucket_border[i]];
-            if (across_charts(job, texel, other)) {
+            if (across_charts(job, texel, &job->point[i])) {
                 if (out) {
-                    out[count] = other;
+                    out[count] = job->point[i].texel;
                 }
                 count++;
             }
@@ -215,6 +225,22 @@ static int compare_texels(const void *left, const void *right)
     return a < b ? -1 : a > b;
 }
 
+/* Sort a list whose first `sorted` entries ascend already. */
+static void sort_list(uint32_t *list, uint32_t count, uint32_t sorted)
+{
+    if (count > 128) {
+        qsort(list, count, sizeof *list, compare_texels);
+        return;
+    }
+    for (uint32_t i = sorted; i < count; i++) {
+        uint32_t moving = list[i], j = i;
+        for (; j > 0 && list[j - 1] > moving; j--) {
+            list[j] = list[j - 1];
+        }
+        list[j] = moving;
+    }
+}
+
 /* Count or fill the lists of a slice of border texels. */
 static void list_slice(void *context, size_t slice)
 {
@@ -223,10 +249,10 @@ static void list_slice(void *context, size_t slice)
     uint32_t end = job->border_count - first < SLICE ? job->border_count : first + SLICE;
     for (uint32_t b = first; b < end; b++) {
         uint32_t *out = job->neighbour ? job->neighbour + job->offset[b] : NULL;
-        uint32_t count = list_window(job, job->border_texel[b], out);
-        count += list_across(job, job->border_texel[b], out ? out + count : NULL);
+        uint32_t window = list_window(job, job->border_texel[b], out);
+        uint32_t count = window + list_across(job, job->border_texel[b], out ? out + window : NULL);
         if (out) {
-            qsort(out, count, sizeof *out, compare_texels);
+            sort_list(out, count, window);
         } else {
             job->offset[b + 1] = count;
         }
@@ -289,7 +315,8 @@ parian_result texels_border(const parian_env *env, parian_body *body, const floa
     parian_free(env, job.neighbour);
     parian_free(env, job.offset);
     parian_free(env, job.border_texel);
-    parian_free(env, job.bucket_border);
+    parian_free(env, job.point);
+    parian_free(env, job.chart);
     parian_free(env, job.bucket_begin);
     parian_free(env, job.supported);
     return result;
