@@ -22,7 +22,7 @@ static const double SCALE = 1.064; /* from the drawing's millimetres to a calf 5
 static double skin_relief(vec3 p)
 {
     double folds = noise3(v3_scale(p, 0.55)) + 0.5 * noise3(v3_scale(p, 1.1));
-    return 0.09 * folds;
+    return 0.12 * folds;
 }
 
 /* A saddle cloth with a raised hem and a woven pattern of diamonds, 0 to about 0.7 above the back.
@@ -33,8 +33,8 @@ static double cloth_relief(vec3 p)
            hang = 24.5 + 0.8 * cos(2 * M_PI * (p.z + 6.5) / 4.25) - p.y;
     double edge = fmax(along, hang); /* negative on the cloth */
     double hem = smoothstep(-2.2, -1.8, edge) * smoothstep(0, -0.4, edge);
-    double weave = cos(2 * M_PI * (p.z + p.y) / 3.4) * cos(2 * M_PI * (p.z - p.y) / 3.4);
-    return smoothstep(0.15, -0.35, edge) * (0.38 + 0.3 * hem + 0.12 * weave * (1 - hem));
+    double weave = cos(2 * M_PI * (p.z + p.y) / 4.6) * cos(2 * M_PI * (p.z - p.y) / 4.6);
+    return smoothstep(0.15, -0.35, edge) * (0.5 + 0.5 * hem + 0.2 * weave * (1 - hem));
 }
 
 static double body_solid(vec3 p)
@@ -51,7 +51,7 @@ static double leg_solid(vec3 m, vec3 hip, vec3 foot)
     for (int toe = -1; toe <= 1; toe++) {
         double angle = 0.62 * toe;
         vec3 nail = v3_add(foot, v3(5.0 * sin(angle), 1.2, 0.4 + 5.2 * cos(angle)));
-        leg = solid_join(leg, solid_ellipsoid(m, nail, v3(1.25, 1.5, 0.9)), 0.25);
+        leg = solid_join(leg, solid_ellipsoid(m, nail, v3(1.6, 1.8, 1.2)), 0.25);
     }
     return leg;
 }
@@ -74,9 +74,9 @@ static double trunk_solid(vec3 p)
     double along = 0;
     double trunk = solid_tube(p, point, radius, 7, &along);
     double rings =
-        cos(2 * M_PI * 4.2 * along) * smoothstep(0.3, 1.2, along) * smoothstep(5.95, 5.4, along);
+        cos(2 * M_PI * 3.4 * along) * smoothstep(0.3, 1.2, along) * smoothstep(5.95, 5.4, along);
     double nostrils = solid_sphere(v3_mirror(p), v3(0.75, 27.6, 38.0), 0.55);
-    return solid_cut(trunk - 0.11 * rings, nostrils, 0.3);
+    return solid_cut(trunk - 0.14 * rings, nostrils, 0.3);
 }
 
 static double ear_solid(vec3 m)
@@ -90,7 +90,8 @@ static double ear_solid(vec3 m)
     double veins =
         cos(9 * atan2(q.y, q.x + 5)) * smoothstep(1, 7, q.x) * smoothstep(-0.6, -4.5, outline);
     double cup = 0.016 * (q.x - 7) * (q.x - 7) + 0.012 * q.y * q.y + 0.5 * sin(0.42 * q.y + 0.3);
-    double half_thickness = 0.62 + 0.9 * root * root + 0.07 * veins;
+    double roll = smoothstep(-2.6, -0.9, outline); /* the rim is rolled */
+    double half_thickness = 0.58 + 0.9 * root * root + 0.1 * veins + 0.4 * roll;
     return 0.85 * solid_plate(outline, q.z - cup + 1, half_thickness);
 }
 
@@ -107,12 +108,12 @@ static double tail_solid(vec3 p)
 static double with_eye(double solid, vec3 m)
 {
     const vec3 eye = {6.9, 36.3, 20.2};
-    solid = solid_cut(solid, solid_sphere(m, v3_add(eye, v3(0.75, 0.1, 0.8)), 1.75), 0.5);
-    solid = solid_join(solid, solid_sphere(m, eye, 1.15), 0.15);
-    const vec3 brow = {6.6, 38.2, 20.0};
+    solid = solid_cut(solid, solid_sphere(m, v3_add(eye, v3(0.85, 0.1, 0.9)), 2.4), 0.6);
+    solid = solid_join(solid, solid_sphere(m, eye, 1.65), 0.2);
+    const vec3 brow = {6.6, 38.7, 20.0};
     return solid_join(solid,
                       solid_cone(m, v3_add(brow, v3(-1.7, -0.2, 0.7)),
-                                 v3_add(brow, v3(1.5, -0.5, -1.2)), 0.6, 0.5),
+                                 v3_add(brow, v3(1.5, -0.5, -1.2)), 0.9, 0.7),
                       1.0);
 }
 
