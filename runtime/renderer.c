@@ -366,7 +366,9 @@ parian_result parian_renderer_read_texels(parian_renderer *renderer,
         return PARIAN_E_ARGUMENT;
     }
     size_t first = 0;
-    parian_result result = parian_renderer_relight(renderer);
+    const bool lit = arrays->irradiance || arrays->radiosity || arrays->radiosity_local ||
+                     arrays->radiosity_global;
+    parian_result result = lit ? parian_renderer_relight(renderer) : PARIAN_OK;
     for (uint32_t b = 0; result == PARIAN_OK && b < renderer->scene->data.body_count; b++) {
         const parian_body *body = &renderer->scene->data.bodies[b];
         copy_surface(body, arrays, first);

@@ -6,8 +6,26 @@
 
 #include <math.h>
 
+#include "core/memory.h"
+
 /* Radiance of the default background for each W/m^2 of light; a white surface has 0.32. */
 static const double BACKGROUND_SHARE = 0.004, BACKGROUND_MAX = 1e6;
+static const double WHITE = 1.5, EXPOSURE_MAX = 60;
+
+/* Unless told: as much as makes a white surface in full light come out as WHITE before the tone
+ * curve. It depends on the lights alone, so pictures of the same lights compare and nothing pumps
+ * while the camera moves. */
+static void choose_exposure(parian_view_app *app)
+{
+    const parian_view_options *o = app->options;
+    const double brightness = parian_view_lights_brightness(&app->lights, app->extent.body_centre);
+    app->exposure_auto = o->exposure_auto;
+    app->exposure_ev = (float)o->exposure_ev;
+    if (!o->exposure_text && brightness > 0) {
+        const double ev = log2(WHITE * 3.14159265358979323846 / brightness);
+        app->exposure_ev = (float)fmax(fmin(ev, EXPOSURE_MAX), -EXPOSURE_MAX);
+    }
+}
 
 static void choose_background(parian_view_app *app)
 {
@@ -44,8 +62,7 @@ parian_result parian_view_app_open(parian_view_app *app)
     if (result == PARIAN_OK) {
         result = parian_view_camera_make(app->env, o->camera, &app->extent, aspect, &app->camera);
     }
-    app->exposure_auto = o->exposure_auto;
-    app->exposure_ev = (float)o->exposure_ev;
+    choose_exposure(app);
     app->settings = (parian_settings){.view = (parian_view_mode)o->view,
                                       .no_specular = o->no_specular,
                                       .roughness = (float)o->roughness};
@@ -66,6 +83,24 @@ parian_result parian_view_app_start(parian_view_app *app,
     if (result == PARIAN_OK) {
         result = parian_renderer_set_lights(app->renderer, app->lights.light, app->lights.count);
     }
+    if (result == PARIAN_OK && parian_view_camera_is_open(app->options->camera)) {
+        result = parian_view_app_frame(app, (double)app->options->width / app->options->height);
+    }
+    return result;
+}
+
+parian_result parian_view_app_frame(parian_view_app *app, double aspect)
+{
+    parian_texel_arrays arrays = {.position = NULL};
+    if (!PARIAN_NEW(app->env, arrays.position, app->info.texel_count)) {
+        return parian_fail(app->env, PARIAN_E_NOMEM, "no memory for the positions of texels");
+    }
+    parian_result result = parian_renderer_read_texels(app->renderer, &arrays);
+    if (result == PARIAN_OK) {
+        parian_view_camera_fit(&app->camera, (const float(*)[3])arrays.position,
+                               app->info.texel_count, app->extent.body_centre, aspect);
+    }
+    parian_free(app->env, arrays.position);
     return result;
 }
 

@@ -27,7 +27,8 @@ typedef struct parian_view_app {
 
 /* Read lights, asset and camera. app->env and app->options are set; close in every case. */
 parian_result parian_view_app_open(parian_view_app *app);
-/* Make the renderer in the current context (NULL: the C evaluation), with lights and settings. */
+/* Make the renderer in the current context (NULL: the C evaluation), with lights and settings, and
+ * frame the bodies unless --camera says from how far to look. */
 parian_result parian_view_app_start(parian_view_app *app,
                                     void *(*get_proc_address)(const char *name));
 /* Free the renderer, while its context is current. */
@@ -37,6 +38,8 @@ void parian_view_app_close(parian_view_app *app);
 /* Draw to a framebuffer ((uint32_t)-1: none) of width x height pixels. */
 parian_result parian_view_app_draw(parian_view_app *app, uint32_t width, uint32_t height,
                                    uint32_t framebuffer);
+/* Fit the camera to the bodies' surface, from the direction it looks in now. */
+parian_result parian_view_app_frame(parian_view_app *app, double aspect);
 /* Force a full relight, and do it. */
 parian_result parian_view_app_relight(parian_view_app *app);
 

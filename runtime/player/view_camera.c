@@ -85,24 +85,49 @@ static void place_orbit(parian_view_camera *camera, double yaw_deg, double pitch
     }
 }
 
-/* The distance from which every corner of the bodies' box is in the picture. */
-static double framing_distance(const parian_view_camera *camera, const parian_view_extent *extent,
-                               double aspect)
+/* The nearest eye that sees every point: with t the slope of the picture's edge, each point asks
+ * for eye_z t + eye_x >= x + z t and eye_z t - eye_x >= -x + z t, and the same in y. */
+void parian_view_camera_fit(parian_view_camera *camera, const float (*point)[3], size_t count,
+                            const double depth_centre[3], double aspect)
 {
-    double right[3], up[3], back[3], distance = 0;
-    const double tan_y = tan(0.5 * radians(camera->fov_deg)) / MARGIN, tan_x = tan_y * aspect;
-    parian_view_camera_axes(camera, right, up, back);
-    for (unsigned corner = 0; corner < 8; corner++) {
-        double p[3];
-        for (int c = 0; c < 3; c++) {
-            p[c] = (corner >> c & 1 ? extent->body_upper[c] : extent->body_lower[c]) -
-                   camera->target[c];
+    double axis[3][3], eye[3] = {0, 0, 0},
+                       most[2][2] = {{-INFINITY, -INFINITY}, {-INFINITY, -INFINITY}};
+    const double tan_y = tan(0.5 * radians(camera->fov_deg)) / MARGIN;
+    const double slope[2] = {tan_y * aspect, tan_y};
+    parian_view_camera_axes(camera, axis[0], axis[1], axis[2]);
+    for (size_t i = 0; i < count; i++) {
+        const double p[3] = {point[i][0], point[i][1], point[i][2]};
+        const double depth = vector_dot(p, axis[2]);
+        for (int k = 0; k < 2; k++) {
+            const double across = vector_dot(p, axis[k]);
+            most[k][0] = fmax(most[k][0], depth * slope[k] + across);
+            most[k][1] = fmax(most[k][1], depth * slope[k] - across);
         }
-        const double depth = vector_dot(p, back);
-        distance = fmax(distance, fabs(vector_dot(p, right)) / tan_x + depth);
-        distance = fmax(distance, fabs(vector_dot(p, up)) / tan_y + depth);
     }
-    return distance > 0 ? distance : 3 * extent->body_radius;
+    if (count == 0) {
+        return;
+    }
+    const double depth = fmax((most[0][0] + most[0][1]) / (2 * slope[0]),
+                              (most[1][0] + most[1][1]) / (2 * slope[1]));
+    vector_add_scaled(eye, 0.5 * (most[0][0] - most[0][1]), axis[0], eye);
+    vector_add_scaled(eye, 0.5 * (most[1][0] - most[1][1]), axis[1], eye);
+    vector_add_scaled(eye, depth, axis[2], eye);
+    const double distance = depth - vector_dot(depth_centre, axis[2]);
+    if (distance > 0) {
+        memcpy(camera->eye, eye, sizeof eye);
+        vector_add_scaled(eye, -distance, axis[2], camera->target);
+    }
+}
+
+static void fit_box(parian_view_camera *camera, const parian_view_extent *extent, double aspect)
+{
+    float corner[8][3];
+    for (unsigned i = 0; i < 8; i++) {
+        for (int c = 0; c < 3; c++) {
+            corner[i][c] = (float)(i >> c & 1 ? extent->body_upper[c] : extent->body_lower[c]);
+        }
+    }
+    parian_view_camera_fit(camera, (const float(*)[3])corner, 8, extent->body_centre, aspect);
 }
 
 typedef struct orbit_text {
@@ -149,6 +174,13 @@ parian_result parian_view_camera_check(const parian_env *env, const char *text)
             text);
     }
     return PARIAN_OK;
+}
+
+bool parian_view_camera_is_open(const char *text)
+{
+    orbit_text orbit;
+    return !text || (strncmp(text, "orbit:", 6) == 0 && parse_orbit(text + 6, &orbit) &&
+                     !orbit.has_distance);
 }
 
 /* ---- camera files ------------------------------------------------------------------------------
@@ -235,11 +267,12 @@ parian_result parian_view_camera_make(const parian_env *env, const char *text,
     if (text) {
         parse_orbit(text + 6, &orbit);
     }
-    place_orbit(camera, orbit.yaw, orbit.pitch, extent->body_radius);
-    double distance = orbit.in_metres      ? orbit.distance
-                      : orbit.has_distance ? orbit.distance * extent->body_radius
-                                           : framing_distance(camera, extent, aspect);
-    place_orbit(camera, orbit.yaw, orbit.pitch, distance);
+    const double unit = orbit.in_metres ? 1 : extent->body_radius;
+    place_orbit(camera, orbit.yaw, orbit.pitch,
+                orbit.has_distance ? orbit.distance * unit : 3 * unit);
+    if (!orbit.has_distance) {
+        fit_box(camera, extent, aspect);
+    }
     return PARIAN_OK;
 }
 

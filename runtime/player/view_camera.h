@@ -22,12 +22,20 @@ typedef struct parian_view_extent {
 } parian_view_extent;
 parian_view_extent parian_view_extent_of(const parian_scene_info *info);
 
-/* The camera that --camera asks for; NULL frames all bodies from the front, a little from above.
- * aspect: width over height, for the framing. Errors: PARIAN_E_ARGUMENT, PARIAN_E_IO,
+/* The camera that --camera asks for; NULL frames the box of all bodies from the front, a little
+ * from above. aspect: width over height, for the framing. Errors: PARIAN_E_ARGUMENT, PARIAN_E_IO,
  * PARIAN_E_FORMAT. */
 parian_result parian_view_camera_make(const parian_env *env, const char *text,
                                       const parian_view_extent *extent, double aspect,
                                       parian_view_camera *camera);
+/* True when --camera leaves the distance open: the camera is then to be fitted to what the bodies
+ * hold. */
+bool parian_view_camera_is_open(const char *text);
+/* Keep the direction of the view, and place eye and target so that all points are in the picture,
+ * centred and as large as they can be; nothing without points. depth_centre: the target is at its
+ * depth. */
+void parian_view_camera_fit(parian_view_camera *camera, const float (*point)[3], size_t count,
+                            const double depth_centre[3], double aspect);
 /* What can be said about --camera before the asset is read: PARIAN_E_ARGUMENT for a bad orbit. */
 parian_result parian_view_camera_check(const parian_env *env, const char *text);
 

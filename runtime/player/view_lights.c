@@ -55,6 +55,21 @@ parian_result parian_view_lights_default(const parian_env *env, const parian_sce
     return result;
 }
 
+/* Mean of a latitude-longitude picture over the sphere, 1 without one. */
+static double mean_of_sky(const parian_light_image *image)
+{
+    double sum = 0, weights = 0;
+    for (uint32_t y = 0; image->pixel && y < image->height; y++) {
+        const double weight = sin(PI * (y + 0.5) / image->height);
+        for (uint32_t x = 0; x < image->width; x++) {
+            const float *pixel = image->pixel[(size_t)y * image->width + x];
+            sum += weight * ((double)pixel[0] + (double)pixel[1] + (double)pixel[2]) / 3;
+            weights += weight;
+        }
+    }
+    return weights > 0 ? sum / weights : 1;
+}
+
 double parian_view_lights_brightness(const parian_light_set *set, const double point[3])
 {
     double sum = 0;
@@ -82,7 +97,7 @@ double parian_view_lights_brightness(const parian_light_set *set, const double p
             sum += squared > 0 ? grey * vector_length(across) / squared : 0;
             break;
         case PARIAN_LIGHT_ENVIRONMENT:
-            sum += grey * PI;
+            sum += grey * PI * mean_of_sky(&light->image);
             break;
         }
     }

@@ -43,8 +43,8 @@ static size_t fill_table(parian_view_options *o, parian_option table[OPTION_MAX]
         {"--method", NULL, PARIAN_OPTION_STRING, &o->method_text, "NAME",
          "How B is computed: transfer (transfer).", 0, 0, NULL, NULL},
         {"--exposure", NULL, PARIAN_OPTION_STRING, &o->exposure_text, "EV|auto",
-         "Scale the picture by 2^EV before the tone curve, or from its log-average luminance "
-         "(auto).",
+         "Scale the picture by 2^EV before the tone curve; auto: from its log-average luminance. "
+         "(From the lights.)",
          0, 0, NULL, NULL},
         {"--background", NULL, PARIAN_OPTION_STRING, &o->background_text, "R,G,B",
          "Radiance behind everything (a dim grey in proportion to the lights; 0,0,0 for .exr).", 0,
@@ -137,6 +137,7 @@ static parian_result check_exposure(const parian_env *env, parian_view_options *
 {
     char *end;
     if (!o->exposure_text || strcmp(o->exposure_text, "auto") == 0) {
+        o->exposure_auto = o->exposure_text != NULL;
         return PARIAN_OK;
     }
     double ev = strtod(o->exposure_text, &end);
@@ -145,7 +146,6 @@ static parian_result check_exposure(const parian_env *env, parian_view_options *
                            "--exposure: '%s' is neither 'auto' nor a number of -%g to %g",
                            o->exposure_text, EXPOSURE_LIMIT, EXPOSURE_LIMIT);
     }
-    o->exposure_auto = false;
     o->exposure_ev = ev;
     return PARIAN_OK;
 }

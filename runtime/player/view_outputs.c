@@ -35,7 +35,8 @@ static parian_result write_png(parian_view_app *app, const char *path, uint32_t 
     }
     parian_result result = parian_renderer_read_picture(app->renderer, NULL, srgb);
     for (size_t i = 0; i < (size_t)width * height && result == PARIAN_OK; i++) {
-        srgb[i][3] = 255; /* the background is part of the picture; coverage goes to the EXR alone */
+        srgb[i][3] =
+            255; /* the background is part of the picture; coverage goes to the EXR alone */
     }
     if (result == PARIAN_OK) {
         result = parian_png_write(app->env, path, width, height, (const uint8_t(*)[4])srgb);

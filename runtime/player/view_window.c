@@ -142,8 +142,7 @@ static void toggle_opaque(view_window *view)
 static void frame_bodies(view_window *view)
 {
     const double aspect = view->height > 0 ? (double)view->width / view->height : 1;
-    view->result = parian_view_camera_make(view->app->env, NULL, &view->app->extent, aspect,
-                                           &view->app->camera);
+    view->result = parian_view_app_frame(view->app, aspect);
 }
 
 static void save_picture(view_window *view)

@@ -61,7 +61,7 @@ static void test_framing_fits(void **state)
             assert_true(fabs(clip[0]) < 1 && fabs(clip[1]) < 1 && fabs(clip[2]) < 1);
             largest = fmax(largest, fmax(fabs(clip[0]), fabs(clip[1])));
         }
-        assert_true(largest > 0.8);
+        assert_true(largest > 0.85);
     }
 }
 
