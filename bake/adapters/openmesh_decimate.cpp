@@ -23,23 +23,6 @@ struct traits : OpenMesh::DefaultTraits {
 };
 using surface = OpenMesh::TriMesh_ArrayKernelT<traits>;
 
-/* Forbids collapses into locked vertices: they may be joined outside this mesh by edges that it
- * does not know of. (That a locked vertex does not go is the decimater's own rule.) */
-template <class Surface> class keep_locked : public OpenMesh::Decimater::ModBaseT<Surface>
-{
-  public:
-    DECIMATING_MODULE(keep_locked, Surface, KeepLocked);
-
-    explicit keep_locked(Surface &mesh) : Base(mesh, true)
-    {
-    }
-    float collapse_priority(const CollapseInfo &collapse) override
-    {
-        return Base::mesh().status(collapse.v1).locked() ? float(Base::ILLEGAL_COLLAPSE)
-                                                         : float(Base::LEGAL_COLLAPSE);
-    }
-};
-
 void copy_in(const parian_mesh *from, const bool *locked, surface &to)
 {
     to.reserve(from->vertex_count, 3 * size_t(from->triangle_count) / 2, from->triangle_count);
@@ -71,10 +54,8 @@ void decimate(surface &mesh, uint32_t vertex_target)
     DecimaterT<surface> decimater(mesh);
     ModQuadricT<surface>::Handle quadric;
     ModNormalFlippingT<surface>::Handle flipping;
-    keep_locked<surface>::Handle lock;
     decimater.add(quadric);
     decimater.module(quadric).unset_max_err();
-    decimater.add(lock);
     decimater.add(flipping);
     decimater.module(flipping).set_max_normal_deviation(45.0f);
     decimater.initialize();

@@ -18,7 +18,7 @@ extern "C" {
  * more can go without turning a triangle by more than 45 degrees. Vertices that stay keep their
  * positions.
  *
- * locked    [vertex_count]; such vertices stay, and none is collapsed into them
+ * locked    [vertex_count]; such vertices stay
  * triangle  the triangles of mesh are replaced in place by those that are left, fewer of them
  *
  * Errors   PARIAN_E_COMPUTE where the mesh is not an oriented 2-manifold, PARIAN_E_NOMEM

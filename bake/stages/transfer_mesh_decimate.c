@@ -11,7 +11,7 @@
 #include "bake/stages/transfer_mesh_parts.h"
 #include "core/memory.h"
 
-enum { PIECE_TRIANGLES = 12000 };
+enum { PIECE_TRIANGLES = 32000 };
 
 typedef struct decimate_job {
     const parian_env *env;
@@ -103,12 +103,29 @@ static void number_vertices(const decimate_job *job, uint32_t begin, uint32_t en
         out->locked[v] = false;
         memcpy(out->mesh.position[v], source->position[origin], sizeof out->mesh.position[0]);
     }
+}
+
+/* Lock the rim and what is next to it; returns how many vertices are locked. The rim itself is
+ * marked in the forest of corners, which is not needed any more. */
+static uint32_t lock_rim(const decimate_job *job, uint32_t begin, uint32_t end, piece *out)
+{
+    const uint32_t *local = &out->mesh.triangle[0][0];
+    uint32_t count = 0, *on_rim = out->parent;
+    memset(on_rim, 0, out->mesh.vertex_count * sizeof *on_rim);
     for (uint32_t i = 0; i < 3 * (end - begin); i++) {
         if (across(job, begin, end, i) == PARIAN_NO_NEIGHBOUR) {
-            out->locked[local[i]] = true;
-            out->locked[local[next_corner(i)]] = true;
+            on_rim[local[i]] = 1;
+            on_rim[local[next_corner(i)]] = 1;
         }
     }
+    for (uint32_t t = 0; t < out->mesh.triangle_count; t++) {
+        const uint32_t *c = out->mesh.triangle[t];
+        for (int k = 0; k < 3 && (on_rim[c[0]] || on_rim[c[1]] || on_rim[c[2]]); k++) {
+            count += !out->locked[c[k]];
+            out->locked[c[k]] = true;
+        }
+    }
+    return count;
 }
 
 static bool allocate_piece(const parian_env *env, uint32_t triangle_count, piece *out)
@@ -145,8 +162,9 @@ static void decimate_piece(void *context, size_t index)
     }
     join_corners(job, begin, end, &work);
     number_vertices(job, begin, end, &work);
+    uint32_t locked = lock_rim(job, begin, end, &work);
     result = parian_decimate(job->env, &work.mesh, work.locked,
-                             (uint32_t)(job->share * work.mesh.vertex_count));
+                             locked + (uint32_t)(job->share * (work.mesh.vertex_count - locked)));
     for (uint32_t t = 0; result == PARIAN_OK && t < work.mesh.triangle_count; t++) {
         for (int k = 0; k < 3; k++) {
             job->kept[begin + t][k] = work.origin[work.mesh.triangle[t][k]];
@@ -201,7 +219,7 @@ static parian_result gather(const parian_env *env, const decimate_job *job, pari
     return PARIAN_OK;
 }
 
-/* Pieces cannot see when an edge of one comes to lie on an edge of another: then borders appear. */
+/* Whether the border is as long as before: a last check that the pieces still fit. */
 static parian_result check_borders(const parian_env *env, const parian_mesh *mesh,
                                    uint32_t border_count, bool *intact)
 {
