@@ -4,7 +4,6 @@
  */
 #include "support/tiny_body.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -94,12 +93,14 @@ static bool fill_texels(const parian_env *env, parian_body *body, uint32_t side)
         body->texel_barycentric[i][0] = t > s ? 1 - t : 1 - s;
         body->texel_barycentric[i][1] = t > s ? s : s - t;
         body->texel_area[i] = SQUARE_M * SQUARE_M / (float)count;
-        float tilt = 0.3f * sinf(6 * s);
-        body->texel_normal_map[i][0] = sinf(tilt);
+        float tilt =
+            0.3f * (s - t); /* of the normal about the diagonal: tangent of half its angle */
+        body->texel_normal_map[i][0] = 2 * tilt / (1 + tilt * tilt);
         body->texel_normal_map[i][1] = 0;
-        body->texel_normal_map[i][2] = cosf(tilt);
+        body->texel_normal_map[i][2] = (1 - tilt * tilt) / (1 + tilt * tilt);
         for (int c = 0; c < 3; c++) {
-            body->texel_albedo[i][c] = 0.5f + 0.4f * cosf(5 * s + 3 * t + (float)c);
+            body->texel_albedo[i][c] =
+                0.5f + 0.125f * (float)((u + 2 * v + (uint32_t)c) % 5) - 0.25f;
         }
     }
     return true;
@@ -196,8 +197,8 @@ static bool fill_operator(const parian_env *env, parian_body *body)
             uint32_t first = column;
             for (; column < VERTICES && (diagonal || column != row); column++) {
                 for (int c = 0; c < 3; c++) {
-                    double distance = fabs((double)column - row);
-                    op->factor[op->factor_total][c] = half_of(exp(-0.5 * (c + 1) * distance));
+                    uint32_t distance = column > row ? column - row : row - column;
+                    op->factor[op->factor_total][c] = half_of(1.0 / (1 + (c + 1) * distance));
                 }
                 op->factor_total++;
             }
