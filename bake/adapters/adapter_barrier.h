@@ -55,7 +55,7 @@ parian_result guard(const parian_env *env, const char *what, parian_result other
     } catch (const std::exception &error) {
         std::string line(error.what());
         for (char &letter : line) {
-            letter = letter == '\n' ? ' ' : letter;
+            letter = letter >= ' ' && letter <= '~' ? letter : '?'; /* it may quote broken input */
         }
         return parian_fail(env, otherwise, "%s: %s", what, line.c_str());
     } catch (...) {
