@@ -9,8 +9,8 @@
 #include "core/memory.h"
 
 /* Radiance of the default background for each W/m^2 of light; a white surface has 0.32. */
-static const double BACKGROUND_SHARE = 0.004, BACKGROUND_MAX = 1e6;
-static const double WHITE = 1.5, EXPOSURE_MAX = 60;
+static const double BACKGROUND_SHARE = 0.005, BACKGROUND_MAX = 1e6;
+static const double WHITE = 2.2, EXPOSURE_MAX = 60;
 
 /* Unless told: as much as makes a white surface in full light come out as WHITE before the tone
  * curve. It depends on the lights alone, so pictures of the same lights compare and nothing pumps

@@ -21,7 +21,7 @@ expect 0 parian-view "$asset" --cpu -q --size 40x30 --image "$work/new/folder/c.
 expect 0 parian-view "$asset" --cpu --size 40x30 --image "$work/c.exr" --view opaque --exposure -1
 [ "$(od -An -tx1 -N4 "$work/c.exr" | tr -d ' ')" = 762f3101 ] || fail "not an OpenEXR picture"
 
-shape() { sed -n "1s/.*'descr': '\(...\)'.*'shape': (\([^)]*\)).*/\1 \2/p" "$1" | tr -d '\0' | head -1; }
+shape() { head -c 128 "$1" | LC_ALL=C tr -cd ' -~' | sed "s/.*'descr': '\(...\)'.*'shape': (\([^)]*\)).*/\1 \2/"; }
 count=$(shape "$work/c/texel_area.npy" | sed 's/<f4 \([0-9]*\),$/\1/')
 [ "$count" -gt 100 ] || fail "no count of texels: $count"
 for name in position normal irradiance radiosity radiosity_local radiosity_global; do
