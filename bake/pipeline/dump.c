@@ -14,7 +14,7 @@
 #include "tool/files.h"
 #include "tool/picture.h"
 
-enum { NAME_MAX_LENGTH = 64, PATH_MAX_LENGTH = 4096 };
+enum { NAME_MAX_LENGTH = 96, PATH_MAX_LENGTH = 4096 };
 
 typedef struct dump_array {
     const char *name;
