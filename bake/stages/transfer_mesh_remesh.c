@@ -91,6 +91,9 @@ static parian_result finish(const parian_env *env, const parian_closest *source,
         result = parian_remesher_copy(env, remesher, &part->result, &on_feature);
     }
     if (result == PARIAN_OK) {
+        result = parian_transfer_untangle(env, on_feature, &part->result);
+    }
+    if (result == PARIAN_OK) {
         result = parian_transfer_project(env, source, on_feature, reach, &part->result);
     }
     if (result == PARIAN_OK) {
