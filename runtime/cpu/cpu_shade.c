@@ -118,13 +118,35 @@ static float ggx(float alpha, float n_l, float n_v, float n_h)
     return density * 0.5f * n_l / (mask_l + mask_v);
 }
 
+/* Cosine towards the viewer. A normal that interpolation or the map turned away from a triangle
+ * that is seen counts as grazing: without this, F_t would draw black lines there. */
+static float seen_cosine(const parian_body *body, uint32_t triangle, const float n[3],
+                         const float v[3])
+{
+    const float *a = body->vertex_position[body->triangle[triangle][0]];
+    float e1[3], e2[3], facet[3];
+    vec3_sub(e1, body->vertex_position[body->triangle[triangle][1]], a);
+    vec3_sub(e2, body->vertex_position[body->triangle[triangle][2]], a);
+    vec3_cross(facet, e1, e2);
+    vec3_normalize(facet);
+    float facing = fabsf(vec3_dot(facet, v));
+    return fmaxf(fmaxf(vec3_dot(n, v), fminf(facing, 0.1f)), 1e-3f);
+}
+
+/* A point of a body, as shading sees it. */
+typedef struct body_point {
+    float p[3], smooth[3]; /* place, interpolated normal */
+    float n[3];            /* normal, of the map where there is one */
+    float v[3], n_v;       /* towards the viewer, and its cosine */
+} body_point;
+
 /* Surface reflection of lights and environment. */
-static void reflect_lights(const parian_shade_desc *desc, float eta, const float p[3],
-                           const float smooth[3], const float n[3], const float v[3], float sum[3])
+static void reflect_lights(const parian_shade_desc *desc, float eta, const body_point *at,
+                           float sum[3])
 {
     const parian_light_list *list = desc->lights->list;
     float roughness = desc->settings->roughness > 0.0f ? desc->settings->roughness : 0.35f;
-    float alpha = fmaxf(roughness * roughness, 1e-3f), n_v = fmaxf(vec3_dot(n, v), 1e-3f);
+    float alpha = fmaxf(roughness * roughness, 1e-3f);
     vec3_set(sum, 0.0f);
     for (uint32_t i = 0; i < list->sample_count; i++) {
         const parian_light_sample *sample = &list->sample[i];
@@ -132,24 +154,26 @@ static void reflect_lights(const parian_shade_desc *desc, float eta, const float
         if (sample->kind == PARIAN_SAMPLE_PROBE) {
             continue;
         }
-        parian_cpu_light_at(list, sample, p, desc->lights->lift, l, light);
-        float n_l = vec3_dot(n, l);
-        if (n_l <= 0.0f || vec3_dot(smooth, l) <= 0.0f || light[0] + light[1] + light[2] <= 0.0f) {
+        parian_cpu_light_at(list, sample, at->p, desc->lights->lift, l, light);
+        float n_l = vec3_dot(at->n, l);
+        if (n_l <= 0.0f || vec3_dot(at->smooth, l) <= 0.0f ||
+            light[0] + light[1] + light[2] <= 0.0f) {
             continue;
         }
         vec3_copy(h, l);
-        vec3_add_scaled(h, v, 1.0f);
+        vec3_add_scaled(h, at->v, 1.0f);
         vec3_normalize(h);
-        float lobe = ggx(alpha, n_l, n_v, fmaxf(vec3_dot(n, h), 0.0f));
+        float lobe = ggx(alpha, n_l, at->n_v, fmaxf(vec3_dot(at->n, h), 0.0f));
         lobe *= 1.0f - parian_fresnel_transmittancef(vec3_dot(l, h), eta);
-        vec3_add_scaled(sum, light, lobe * parian_cpu_visibility(desc->lights, sample, p, smooth));
+        vec3_add_scaled(sum, light,
+                        lobe * parian_cpu_visibility(desc->lights, sample, at->p, at->smooth));
     }
     if (list->has_environment) {
-        float mirrored[3] = {-v[0], -v[1], -v[2]}, sky[3];
-        vec3_add_scaled(mirrored, n, 2.0f * n_v);
+        float mirrored[3] = {-at->v[0], -at->v[1], -at->v[2]}, sky[3];
+        vec3_add_scaled(mirrored, at->n, 2.0f * at->n_v);
         vec3_normalize(mirrored);
         parian_cpu_environment_radiance(list, mirrored, sky);
-        vec3_add_scaled(sum, sky, 1.0f - parian_fresnel_transmittancef(n_v, eta));
+        vec3_add_scaled(sum, sky, 1.0f - parian_fresnel_transmittancef(at->n_v, eta));
     }
 }
 
@@ -180,45 +204,49 @@ static void scattered(const parian_shade_desc *desc, uint32_t b, const float uv[
     }
 }
 
-static void shade_body(const parian_shade_desc *desc, uint32_t b, uint32_t triangle,
-                       const float uv[2], const float p[3], const float smooth[3], const float v[3],
-                       float out[3])
+/* The factor from scattered light to radiance, per channel. */
+static float exit_factor(const parian_shade_desc *desc, uint32_t b, float n_v, int channel)
 {
     const parian_body_optics *optics = &desc->optics[b];
-    const parian_settings *settings = desc->settings;
-    float n[3];
-    vec3_copy(n, smooth);
-    if (desc->atlas[b].normal && !settings->no_normal_map) {
-        fetch_atlas((const float(*)[4])desc->atlas[b].normal, desc->scene->bodies[b].atlas_size, uv,
-                    n);
-        vec3_normalize(n);
+    if (desc->settings->view == PARIAN_VIEW_IRRADIANCE) {
+        return 1.0f / (float)M_PI;
     }
-    float n_v = fmaxf(vec3_dot(n, v), 1e-3f);
+    if (desc->settings->view == PARIAN_VIEW_OPAQUE) {
+        return optics->albedo[channel] / (float)M_PI;
+    }
+    return parian_fresnel_transmittancef(n_v, optics->eta) / ((float)M_PI * optics->exit_norm);
+}
+
+/* at: p, smooth and v are set. */
+static void shade_body(const parian_shade_desc *desc, uint32_t b, uint32_t triangle,
+                       const float uv[2], body_point *at, float out[3])
+{
+    const parian_settings *settings = desc->settings;
+    const parian_body *body = &desc->scene->bodies[b];
+    vec3_copy(at->n, at->smooth);
+    if (desc->atlas[b].normal && !settings->no_normal_map) {
+        fetch_atlas((const float(*)[4])desc->atlas[b].normal, body->atlas_size, uv, at->n);
+        vec3_normalize(at->n);
+    }
+    at->n_v = seen_cosine(body, triangle, at->n, at->v);
     if (settings->view == PARIAN_VIEW_NORMALS) {
-        for (int c = 0; c < 3; c++) {
-            out[c] = 0.5f + 0.5f * n[c];
-        }
+        vec3_set(out, 0.5f);
+        vec3_add_scaled(out, at->n, 0.5f);
         return;
     }
     if (settings->view == PARIAN_VIEW_CHARTS) {
-        parian_chart_color(desc->scene->bodies[b].triangle_chart[triangle], out);
-        vec3_scale(out, 0.3f + 0.7f * n_v);
+        parian_chart_color(body->triangle_chart[triangle], out);
+        vec3_scale(out, 0.3f + 0.7f * at->n_v);
         return;
     }
     scattered(desc, b, uv, out);
     for (int c = 0; c < 3; c++) {
-        float factor = 1.0f / (float)M_PI;
-        if (settings->view == PARIAN_VIEW_OPAQUE) {
-            factor *= optics->albedo[c];
-        } else if (settings->view != PARIAN_VIEW_IRRADIANCE) {
-            factor *= parian_fresnel_transmittancef(n_v, optics->eta) / optics->exit_norm;
-        }
-        out[c] = fmaxf(out[c] * factor, 0.0f);
+        out[c] = fmaxf(out[c] * exit_factor(desc, b, at->n_v, c), 0.0f);
     }
     bool whole = settings->view == PARIAN_VIEW_COMBINED || settings->view == PARIAN_VIEW_OPAQUE;
-    if (whole && !settings->no_specular && optics->eta != 1.0f) {
+    if (whole && !settings->no_specular && desc->optics[b].eta != 1.0f) {
         float shine[3];
-        reflect_lights(desc, optics->eta, p, smooth, n, v, shine);
+        reflect_lights(desc, desc->optics[b].eta, at, shine);
         vec3_add_scaled(out, shine, 1.0f);
     }
 }
@@ -265,24 +293,25 @@ static void shade_point(const parian_shade_desc *desc, const seen_point *seen, f
 {
     mesh_view mesh = view_mesh(desc->scene, seen->mesh);
     const float beta[3] = {seen->b0, seen->b1, 1.0f - seen->b0 - seen->b1};
-    float p[3] = {0}, n[3] = {0}, uv[2] = {0}, v[3];
+    float uv[2] = {0};
+    body_point at = {{0}, {0}, {0}, {0}, 0.0f};
     bool body = seen->mesh < desc->scene->body_count;
     for (int k = 0; k < 3; k++) {
-        vec3_add_scaled(p, mesh.position[mesh.triangle[seen->triangle][k]], beta[k]);
-        vec3_add_scaled(n, mesh.corner_normal[seen->triangle][k], beta[k]);
+        vec3_add_scaled(at.p, mesh.position[mesh.triangle[seen->triangle][k]], beta[k]);
+        vec3_add_scaled(at.smooth, mesh.corner_normal[seen->triangle][k], beta[k]);
         for (int axis = 0; body && axis < 2; axis++) {
             uv[axis] +=
                 beta[k] * desc->scene->bodies[seen->mesh].corner_uv[seen->triangle][k][axis];
         }
     }
-    vec3_normalize(n);
-    vec3_copy(v, desc->view->eye);
-    vec3_add_scaled(v, p, -desc->view->eye[3]);
-    vec3_normalize(v);
+    vec3_normalize(at.smooth);
+    vec3_copy(at.v, desc->view->eye);
+    vec3_add_scaled(at.v, at.p, -desc->view->eye[3]);
+    vec3_normalize(at.v);
     if (body) {
-        shade_body(desc, seen->mesh, seen->triangle, uv, p, n, v, out);
+        shade_body(desc, seen->mesh, seen->triangle, uv, &at, out);
     } else {
-        shade_surrounding(desc, seen->mesh - desc->scene->body_count, p, n, v, out);
+        shade_surrounding(desc, seen->mesh - desc->scene->body_count, at.p, at.smooth, at.v, out);
     }
     out[3] = 1.0f;
 }

@@ -38,6 +38,15 @@ vec3 fetch_atlas(sampler2D atlas, vec2 uv)
     return sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0);
 }
 
+// Cosine towards the viewer. A normal that interpolation or the map turned away from a triangle that is
+// seen counts as grazing: without this, F_t would draw black lines there.
+float seen_cosine(vec3 n, vec3 v)
+{
+    vec3 facet = cross(dFdx(v_position), dFdy(v_position));
+    float facing = abs(dot(facet, v)) / max(length(facet), 1e-30);
+    return max(max(dot(n, v), min(facing, 0.1)), 1e-3);
+}
+
 // GGX with height-correlated masking, times the cosine of the light.
 float ggx(float n_l, float n_v, float n_h)
 {
@@ -49,9 +58,8 @@ float ggx(float n_l, float n_v, float n_h)
     return density * 0.5 * n_l / (mask_l + mask_v);
 }
 
-vec3 reflect_lights(vec3 smooth_n, vec3 n, vec3 v)
+vec3 reflect_lights(vec3 smooth_n, vec3 n, vec3 v, float n_v)
 {
-    float n_v = max(dot(n, v), 1e-3);
     vec3 sum = vec3(0.0);
     for (int i = 0; i < u_light_count; i++) {
         vec3 l, light;
@@ -100,7 +108,7 @@ void main()
     if (u_has_normal_map != 0) {
         n = normalize(fetch_atlas(u_normal_map, v_uv));
     }
-    float n_v = max(dot(n, v), 1e-3);
+    float n_v = seen_cosine(n, v);
     o_radiance.a = 1.0;
     if (u_view == VIEW_NORMALS) {
         o_radiance.rgb = 0.5 + 0.5 * n;
@@ -118,6 +126,6 @@ void main()
     }
     o_radiance.rgb = max(scattered() * factor, 0.0);
     if (u_specular != 0) {
-        o_radiance.rgb += reflect_lights(smooth_n, n, v);
+        o_radiance.rgb += reflect_lights(smooth_n, n, v, n_v);
     }
 }
