@@ -22,8 +22,8 @@ static double profile_distance(double r, double y)
 {
     static const vec3 point[] = {{0, 4, 0},      {12, 4, 0},    {17.5, 5, 0},
                                  {22.5, 9.5, 0}, {26, 17, 0},   {27.6, 27, 0},
-                                 {28, 38, 0},    {28.6, 48, 0}, {30.2, 56.6, 0}};
-    static const double radius[] = {1.5, 1.5, 1.45, 1.35, 1.25, 1.15, 1.1, 1.05, 1.15};
+                                 {28, 38, 0},    {28.6, 48, 0}, {30.2, 56.2, 0}};
+    static const double radius[] = {1.6, 1.6, 1.55, 1.45, 1.4, 1.3, 1.25, 1.25, 1.6};
     return solid_tube(v3(r, y, 0), point, radius, 9, NULL);
 }
 
