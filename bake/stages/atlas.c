@@ -15,10 +15,11 @@ enum {
     SIDE_MIN = 16,
     SIDE_MAX = 8192,
     PACK_SIDE = 512, /* packing grids have about this many cells a side, whatever the atlas has */
-    SCALE_STEPS = 8,
+    SCALE_STEPS = 6,
     RELAXATION_ROUNDS = 3
 };
 static const double MERGE_WIDENING = 1.25, RELAX_WIDENING = 1.15; /* of the chart angle */
+static const double CLIMB_FIRST = 0.03, CLIMB_LAST = 0.01;        /* steps of the occupancy */
 static const double OCCUPANCY_MOST = 1.0;                         /* a square chart comes near it */
 static const double OCCUPANCY_LEAST = 0.50;  /* tried first; where it fails, ever less */
 static const double MEAN_CHART_TEXELS = 2.0; /* below it an atlas carries nothing but gutters */
@@ -47,13 +48,17 @@ static pack_grid make_grid(const atlas_job *job, uint32_t side, double occupancy
     return (pack_grid){side / step, (job->gutter + step - 1) / step, texels_per_metre / step};
 }
 
-/* Try to pack at an occupancy; keep the packing when it fits. */
-static parian_result try_pack(atlas_job *job, uint32_t side, double occupancy, bool *fits)
+/* Try to pack at an occupancy, by some tactics after each other; keep the packing when one fits. */
+static parian_result try_pack(atlas_job *job, uint32_t side, double occupancy, unsigned tactics,
+                              bool *fits)
 {
     pack_grid grid = make_grid(job, side, occupancy);
-    parian_result result = parian_cancelled(job->env) ? PARIAN_E_INTERRUPTED : PARIAN_OK;
-    if (result == PARIAN_OK) {
-        result = chart_set_pack(job->env, &job->set, &grid, job->trial, fits);
+    parian_result result = PARIAN_OK;
+    *fits = false;
+    for (unsigned tactic = 0; tactic < tactics && !*fits && result == PARIAN_OK; tactic++) {
+        result = parian_cancelled(job->env)
+                     ? PARIAN_E_INTERRUPTED
+                     : chart_set_pack(job->env, &job->set, &grid, tactic, job->trial, fits);
     }
     if (result == PARIAN_OK && *fits) {
         chart_place *kept = job->trial;
@@ -68,7 +73,22 @@ static double occupancy_floor(const atlas_job *job, uint32_t side)
     return MEAN_CHART_TEXELS * job->flat_count / ((double)side * side);
 }
 
-/* Find the largest scale that fits, by bisection of its logarithm; found is 0 when none does. */
+/* Raise a scale that fits by ever smaller steps as long as any tactic follows. */
+static parian_result climb_scale(atlas_job *job, uint32_t side, double *found)
+{
+    parian_result result = PARIAN_OK;
+    for (double step = CLIMB_FIRST; step > CLIMB_LAST && result == PARIAN_OK; step *= 0.5) {
+        bool fits = true;
+        while (fits && result == PARIAN_OK && *found * (1.0 + step) < OCCUPANCY_MOST) {
+            result = try_pack(job, side, *found * (1.0 + step), PACK_TACTICS, &fits);
+            *found *= fits ? 1.0 + step : 1.0;
+        }
+    }
+    return result;
+}
+
+/* Find about the largest scale that fits, by bisection of its logarithm; found is 0 when none does.
+ */
 static parian_result search_scale(atlas_job *job, uint32_t side, double *found)
 {
     double floor = occupancy_floor(job, side), low = OCCUPANCY_LEAST, high = OCCUPANCY_MOST;
@@ -78,11 +98,11 @@ static parian_result search_scale(atlas_job *job, uint32_t side, double *found)
         return PARIAN_OK;
     }
     low = fmax(low, floor);
-    parian_result result = try_pack(job, side, low, &fits);
+    parian_result result = try_pack(job, side, low, 1, &fits);
     while (result == PARIAN_OK && !fits && low > floor) {
         high = low;
         low = fmax(0.7 * low, floor);
-        result = try_pack(job, side, low, &fits);
+        result = try_pack(job, side, low, 1, &fits);
     }
     if (result != PARIAN_OK || !fits) {
         return result;
@@ -90,7 +110,7 @@ static parian_result search_scale(atlas_job *job, uint32_t side, double *found)
     *found = low;
     for (int step = 0; step < SCALE_STEPS && result == PARIAN_OK; step++) {
         double middle = sqrt(low * high);
-        result = try_pack(job, side, middle, &fits);
+        result = try_pack(job, side, middle, 1, &fits);
         if (fits) {
             *found = low = middle;
         } else {
@@ -98,7 +118,7 @@ static parian_result search_scale(atlas_job *job, uint32_t side, double *found)
         }
         parian_progress(job->env, "atlas", 0.3 + 0.1 * step);
     }
-    return result;
+    return result == PARIAN_OK ? climb_scale(job, side, found) : result;
 }
 
 /* The smallest side at which the charts fit, or 0: doubled until they do, then bisected. */
@@ -112,7 +132,7 @@ static parian_result find_smallest_side(atlas_job *job, uint32_t side, uint32_t 
         low = high;
         high = high < SIDE_MAX / 2 ? 2 * high : SIDE_MAX;
         double floor = occupancy_floor(job, high);
-        result = floor < OCCUPANCY_MOST ? try_pack(job, high, floor, &fits) : PARIAN_OK;
+        result = floor < OCCUPANCY_MOST ? try_pack(job, high, floor, 1, &fits) : PARIAN_OK;
     }
     if (!fits) {
         return result;
@@ -121,7 +141,7 @@ static parian_result find_smallest_side(atlas_job *job, uint32_t side, uint32_t 
         uint32_t middle = low + (high - low) / 2;
         double floor = occupancy_floor(job, middle);
         fits = false;
-        result = floor < OCCUPANCY_MOST ? try_pack(job, middle, floor, &fits) : PARIAN_OK;
+        result = floor < OCCUPANCY_MOST ? try_pack(job, middle, floor, 1, &fits) : PARIAN_OK;
         *(fits ? &high : &low) = middle;
     }
     *smallest = high;

@@ -24,10 +24,18 @@ typedef struct shape {
     run *runs;
 } shape;
 
+/* height: what the height of a shape counts against how low it lies, when its orientation is
+ * chosen; at 1 its top counts. length: what long charts count more than their area, when the order
+ * is chosen. */
+static const struct {
+    double height, length;
+} TACTICS[PACK_TACTICS] = {{0.25, 0.25}, {0.0, 0.25}, {1.0, 0.25}, {0.25, 1.0}};
+
 typedef struct packer {
     const parian_env *env;
     const chart_set *set;
     const pack_grid *grid;
+    unsigned tactic;
     uint8_t *mask;                      /* [side * side] scratch: cells of the chart at hand */
     uint8_t *blocked;                   /* [side * side] cells that no further chart may touch */
     uint16_t *next_blocked, *next_free; /* [side * side] first such x at or after a cell, or side */
@@ -182,14 +190,14 @@ static uint32_t find_in_row(const packer *p, const shape *s, uint32_t y, uint32_
     return side;
 }
 
-/* The lowest, then leftmost place of a shape, if its top stays below `top`. */
-static bool find_place(const packer *p, const shape *s, uint32_t top, uint32_t *x, uint32_t *y)
+/* The lowest, then leftmost place of a shape. */
+static bool find_place(const packer *p, const shape *s, uint32_t *x, uint32_t *y)
 {
     uint32_t side = p->grid->side;
     if (s->width + 2 > side || s->height + 2 > side) {
         return false;
     }
-    for (uint32_t v = 1; v + s->height < side && v + s->height < top; v++) {
+    for (uint32_t v = 1; v + s->height < side; v++) {
         uint32_t u = find_in_row(p, s, v, 1);
         if (u < side) {
             *x = u;
@@ -242,7 +250,8 @@ static void block_shape(packer *p, const shape *s, uint32_t x, uint32_t y)
 static parian_result place_chart(packer *p, uint32_t chart, chart_place *place, bool *fits)
 {
     shape shapes[4];
-    uint32_t top = 0xFFFFFFFFu, x = 0, y = 0;
+    double best = INFINITY;
+    uint32_t x = 0, y = 0;
     *fits = measure_box(p, chart, place);
     if (!*fits) {
         return PARIAN_OK;
@@ -251,14 +260,18 @@ static parian_result place_chart(packer *p, uint32_t chart, chart_place *place, 
         return PARIAN_E_NOMEM;
     }
     for (uint32_t quarter = 0; quarter < 4; quarter++) {
-        if (find_place(p, &shapes[quarter], top, &x, &y)) {
-            top = y + shapes[quarter].height;
+        if (!find_place(p, &shapes[quarter], &x, &y)) {
+            continue;
+        }
+        double cost = y + TACTICS[p->tactic].height * shapes[quarter].height;
+        if (cost < best) {
+            best = cost;
             place->quarter = quarter;
             place->x = x;
             place->y = y;
         }
     }
-    *fits = top != 0xFFFFFFFFu;
+    *fits = best < INFINITY;
     if (*fits) {
         block_shape(p, &shapes[place->quarter], place->x, place->y);
     }
@@ -280,7 +293,7 @@ static int larger_first(const void *left, const void *right)
 }
 
 /* Charts by the area of their boxes, weighted towards long ones, which are hard to place late. */
-static size_entry *sort_charts(const parian_env *env, const chart_set *set)
+static size_entry *sort_charts(const parian_env *env, const chart_set *set, double length)
 {
     size_entry *order;
     if (!PARIAN_NEW(env, order, set->chart_count)) {
@@ -288,19 +301,19 @@ static size_entry *sort_charts(const parian_env *env, const chart_set *set)
     }
     for (uint32_t c = 0; c < set->chart_count; c++) {
         double a = set->extent[c][0], b = set->extent[c][1];
-        order[c] = (size_entry){a * b + 0.25 * fmax(a, b) * fmax(a, b), c};
+        order[c] = (size_entry){a * b + length * fmax(a, b) * fmax(a, b), c};
     }
     qsort(order, set->chart_count, sizeof *order, larger_first);
     return order;
 }
 
 parian_result chart_set_pack(const parian_env *env, const chart_set *set, const pack_grid *grid,
-                             chart_place *place, bool *fits)
+                             unsigned tactic, chart_place *place, bool *fits)
 {
-    packer p = {.env = env, .set = set, .grid = grid};
+    packer p = {.env = env, .set = set, .grid = grid, .tactic = tactic % PACK_TACTICS};
     size_t cells = (size_t)grid->side * grid->side;
     parian_result result = PARIAN_OK;
-    size_entry *order = sort_charts(env, set);
+    size_entry *order = sort_charts(env, set, TACTICS[p.tactic].length);
     *fits = true;
     if (!order || !PARIAN_NEW(env, p.mask, cells) || !PARIAN_NEW0(env, p.blocked, cells) ||
         !PARIAN_NEW(env, p.next_blocked, cells) || !PARIAN_NEW(env, p.next_free, cells)) {

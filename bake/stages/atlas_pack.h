@@ -21,11 +21,15 @@ typedef struct pack_grid {
     double scale;  /* cells per metre */
 } pack_grid;
 
-/* Place all charts of positive extent; fits tells whether there was room. place: [chart_count],
- * written only where fits. Charts never overlap, keep `gap` cells (diagonally too) from each other
- * and one from the side of the grid. Errors: PARIAN_E_NOMEM. Threads: pure function. */
+/* Ways to place, none of which wins on every set of charts. */
+enum { PACK_TACTICS = 4 };
+
+/* Place all charts of positive extent by one of the tactics; fits tells whether there was room.
+ * place: [chart_count], written only where fits. Charts never overlap, keep `gap` cells (diagonally
+ * too) from each other and one from the side of the grid. Errors: PARIAN_E_NOMEM. Threads: pure
+ * function. */
 parian_result chart_set_pack(const parian_env *env, const chart_set *set, const pack_grid *grid,
-                             chart_place *place, bool *fits);
+                             unsigned tactic, chart_place *place, bool *fits);
 
 /* Position of a corner of a chart in the packed grid, cells. */
 void chart_place_point(const chart_place *place, double scale, const double flat[2], double out[2]);
