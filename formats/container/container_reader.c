@@ -274,7 +274,7 @@ static parian_result read_blocks(const parian_reader *reader, uint32_t index, vo
 
 parian_result parian_reader_read(const parian_reader *reader, uint32_t index, void *destination)
 {
-    static uint8_t nothing;
+    uint8_t nothing; /* where the bytes of an empty chunk would go */
     return read_blocks(reader, index, destination ? destination : &nothing);
 }
 

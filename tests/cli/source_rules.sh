@@ -21,11 +21,19 @@ done
 sources | sed 's|.*/||' | sort | uniq -d > "$out"
 [ ! -s "$out" ] || fail "names that are not unique: $(tr '\n' ' ' < "$out")"
 
-# Every folder with sources says what its files are; a README names each file of its own folder.
+# A README.md says what a folder's files are: its own, or that of a folder above it below the root.
 for folder in $(sources | sed 's|/[^/]*$||' | sort -u); do
-    readme=$folder/README.md
-    [ -f "$readme" ] || readme=$(dirname "$folder")/README.md
-    [ -f "$readme" ] || { echo "no README.md for $folder"; missing=1; }
+    above=$folder
+    while [ ! -f "$above/README.md" ]; do
+        case $above in
+        */*) above=${above%/*} ;;
+        *)
+            echo "no README.md for $folder"
+            missing=1
+            break
+            ;;
+        esac
+    done
 done
 [ -z "${missing:-}" ] || fail "folders without a README"
 done_ok
