@@ -5,6 +5,7 @@
  */
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "core/body_file.h"
 #include "core/memory.h"
@@ -23,16 +24,32 @@ static void print_shape(const parian_chunk_info *info, char text[SHAPE_MAX])
     }
 }
 
+/* Columns as wide as their longest entry. */
+static void measure_columns(const parian_reader *reader, int *name_width, int *shape_width)
+{
+    for (uint32_t i = 0; i < parian_reader_chunk_count(reader); i++) {
+        char name[INSPECT_NAME_MAX], shape[SHAPE_MAX];
+        inspect_chunk_name(parian_reader_chunk(reader, i), name);
+        print_shape(parian_reader_chunk(reader, i), shape);
+        *name_width = (int)strlen(name) > *name_width ? (int)strlen(name) : *name_width;
+        *shape_width = (int)strlen(shape) > *shape_width ? (int)strlen(shape) : *shape_width;
+    }
+}
+
 static void print_chunks(const parian_reader *reader)
 {
-    printf("%-30s %-20s %-12s %7s %8s\n", "chunk", "array", "codec", "stored", "decoded");
+    int width = 5, shape_width = 5;
+    measure_columns(reader, &width, &shape_width);
+    printf("%-*s  %-*s  %-12s  %8s  %8s\n", width, "chunk", shape_width, "array", "codec", "stored",
+           "decoded");
     for (uint32_t i = 0; i < parian_reader_chunk_count(reader); i++) {
         const parian_chunk_info *info = parian_reader_chunk(reader, i);
         char name[INSPECT_NAME_MAX], shape[SHAPE_MAX];
         inspect_chunk_name(info, name);
         print_shape(info, shape);
-        printf("%-30s %-20s %-12s %7s %8s\n", name, shape, parian_codec_name(info->codec),
-               inspect_bytes(info->stored_size), inspect_bytes(info->size));
+        printf("%-*s  %-*s  %-12s  %8s  %8s\n", width, name, shape_width, shape,
+               parian_codec_name(info->codec), inspect_bytes(info->stored_size),
+               inspect_bytes(info->size));
     }
 }
 
