@@ -52,6 +52,7 @@ static void finish_vertices(const parian_body *body, parian_vertex_frame *frame,
         double length = sqrt(parian_dot3(normal[v], normal[v]));
         frame->area[v] = (float)(sum[v][0] / 3);
         frame->bias[v] = sum[v][0] > 0 ? (float)(sum[v][1] / sum[v][0]) : 0;
+        frame->bias_max = fmaxf(frame->bias_max, frame->bias[v]);
         for (int k = 0; k < 3; k++) {
             frame->normal[v][k] = length > 0 ? (float)(normal[v][k] / length) : k == 2;
         }

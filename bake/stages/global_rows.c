@@ -127,7 +127,7 @@ static float least_of_16(const float *r2)
 static void prefilter_row(const parian_row_maker *maker, uint32_t v, const parian_row *row)
 {
     const parian_point_arrays *points = &maker->frame.points;
-    float reach2 = PREFILTER_TO * 16 * maker->frame.bias[v];
+    float reach2 = PREFILTER_TO * 8 * (maker->frame.bias[v] + maker->frame.bias_max);
     for (uint32_t u = 0; u < points->padded; u += 16) {
         if (least_of_16(row->r2 + u) > reach2) {
             continue;

@@ -16,7 +16,8 @@
 #include "core/small_maths.h"
 
 enum { POLAR_ANGLES = 6, POLAR_RADII = 12, CUTS_MAX = 12, ROWS_PER_BLOCK = 32 };
-static const float NEAR_EDGES = 5; /* edges; relative error of the hats beyond: h^2 / r^2 / 2 */
+static const float NEAR_EDGES =
+    8; /* edges: 0.03 % of the total at two mean free paths an edge; 0.12 % with 5 */
 
 typedef struct totals_job {
     const parian_env *env;
@@ -62,30 +63,44 @@ static void add_point(const totals_job *job, uint32_t v, uint32_t t, const doubl
     }
 }
 
+/* Along one ray of a triangle with corner v, from tau to tau + span; weight is 2 A times that of
+ * the ray. */
+static void add_ray(const totals_job *job, uint32_t v, uint32_t t, int k, double s, double length,
+                    double tau, double span, double weight, double sum[3])
+{
+    double z = job->model->z_min;
+    for (int j = 0; j < POLAR_RADII; j++) {
+        double at = tau + span * job->radius[j], rho = z / length * sinh(at), beta[3];
+        double step = span * job->radius_weight[j] * z / length * cosh(at);
+        beta[k] = 1 - rho;
+        beta[(k + 1) % 3] = rho * (1 - s);
+        beta[(k + 2) % 3] = rho * s;
+        add_point(job, v, t, beta, weight * step * rho, sum);
+    }
+}
+
 /* A triangle with corner v: x = v + rho (p(s) - v) with p along the opposite edge has the area
- * element 2 A rho; r = z sinh(tau) grades the radius towards the peak at v. */
+ * element 2 A rho; r = z sinh(tau) grades the radius towards the peak at v, in two panels. */
 static void add_polar(const totals_job *job, uint32_t v, uint32_t t, double sum[3])
 {
+    static const double PEAK = 4; /* r = 27 z_r */
     const uint32_t *corner = job->body->triangle[t];
     int k = corner[0] == v ? 0 : corner[1] == v ? 1 : 2;
-    double z = job->model->z_min, area = job->frame->triangle_area[t], a[3], b[3];
+    double area = job->frame->triangle_area[t], a[3], b[3];
     parian_sub3(job->body->vertex_position[corner[(k + 1) % 3]], job->body->vertex_position[v], a);
     parian_sub3(job->body->vertex_position[corner[(k + 2) % 3]], job->body->vertex_position[v], b);
     for (int i = 0; i < POLAR_ANGLES; i++) {
-        double s = job->angle[i], length2 = 0;
+        double s = job->angle[i], length2 = 0, weight = 2 * area * job->angle_weight[i];
         for (int j = 0; j < 3; j++) {
             double p = a[j] + s * (b[j] - a[j]);
             length2 += p * p;
         }
-        double length = sqrt(length2), top = asinh(length / z);
-        for (int j = 0; j < POLAR_RADII && length > 0; j++) {
-            double tau = top * job->radius[j], rho = z / length * sinh(tau), beta[3];
-            double step = top * z / length * cosh(tau);
-            beta[k] = 1 - rho;
-            beta[(k + 1) % 3] = rho * (1 - s);
-            beta[(k + 2) % 3] = rho * s;
-            add_point(job, v, t, beta,
-                      2 * area * job->angle_weight[i] * job->radius_weight[j] * step * rho, sum);
+        double length = sqrt(length2), top = asinh(length / job->model->z_min);
+        if (length > 0) {
+            add_ray(job, v, t, k, s, length, 0, fmin(top, PEAK), weight, sum);
+        }
+        if (length > 0 && top > PEAK) {
+            add_ray(job, v, t, k, s, length, PEAK, top - PEAK, weight, sum);
         }
     }
 }
@@ -161,6 +176,7 @@ static void total_of_vertex(const totals_job *job, uint32_t v, parian_row *row, 
     parian_transport_model_row(job->model, job->body->vertex_position[v], frame->normal[v],
                                job->as_source, &frame->points, row->r2, row->value);
     for (int c = 0; c < 3; c++) {
+        row->value[c][v] = 0; /* no share in the sum that cancellation could spoil */
         sum[c] = parian_row_dot(frame->area, row->value[c], frame->points.padded);
     }
     for (uint32_t u = 0; u < frame->points.count; u++) {

@@ -14,6 +14,7 @@ typedef struct parian_vertex_frame {
     float *
         area; /* [vertex_count] a third of the incident triangles' area: integral of the hat, m^2 */
     float *bias; /* [vertex_count] m^2: linear interpolation adds bias times the Laplacian (mean) */
+    float bias_max;
     float (*normal)[3];   /* [vertex_count] unit, weighted by angle */
     float *triangle_area; /* [triangle_count] m^2 */
     uint32_t *fan_offset; /* [vertex_count + 1] */

@@ -52,33 +52,62 @@ static void disc_mean(const parian_texel_response *response, uint32_t i, float v
     }
 }
 
-/* Two unit vectors across a unit normal. */
-static void tangents(const float n[3], float u[3], float v[3])
+/* The square that stands for texel i, seen from o: centre, and axes of its side length, the first
+ * along the line of sight. Two texels do not overlap, so the centre is kept at 0.85 of the sum of
+ * their discs' radii: no change on a regular grid, but a sliver's centroid may lie nearer. */
+static void place_square(const parian_body *body, uint32_t i, uint32_t o, float centre[3],
+                         float u[3], float v[3])
 {
-    float sign = n[2] < 0 ? -1.0f : 1.0f, a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
-    u[0] = 1 + sign * n[0] * n[0] * a, u[1] = sign * b, u[2] = -sign * n[0];
-    v[0] = b, v[1] = sign + n[1] * n[1] * a, v[2] = -n[1];
+    const float *x = body->texel_position[o], *n = body->texel_normal[i];
+    double d[3], normal[3] = {n[0], n[1], n[2]}, across[3], along[3],
+                 side = sqrt(body->texel_area[i]);
+    double least = 0.85 * (side + sqrt(body->texel_area[o])) / sqrt(PARIAN_PI);
+    parian_sub3(body->texel_position[i], x, d);
+    double distance = sqrt(parian_dot3(d, d));
+    if (!(distance > 1e-6 * least)) {
+        d[0] = fabs(n[0]) < 0.6, d[1] = fabs(n[0]) >= 0.6, d[2] = 0;
+        d[0] *= least, d[1] *= least;
+    } else if (distance < least) {
+        for (int k = 0; k < 3; k++) {
+            d[k] *= least / distance;
+        }
+    }
+    parian_cross3(normal, d, across);
+    double length = sqrt(parian_dot3(across, across));
+    for (int k = 0; k < 3; k++) {
+        across[k] *= length > 0 ? side / length : 0;
+        centre[k] = (float)(x[k] + d[k]);
+        v[k] = (float)across[k];
+    }
+    parian_cross3(across, normal, along);
+    for (int k = 0; k < 3; k++) {
+        u[k] = (float)along[k];
+    }
 }
 
+/* Mean over the square; never more than over a disc of its area around the receiver. */
 static void square_mean(const parian_texel_response *response, uint32_t i, uint32_t o,
                         float value[3])
 {
     const parian_body *body = response->body;
-    const float *x = body->texel_position[i], *n = body->texel_normal[i];
-    float side = sqrtf(body->texel_area[i]), u[3], v[3];
-    tangents(n, u, v);
+    float x[3], u[3], v[3], most[3];
+    place_square(body, i, o, x, u, v);
     value[0] = value[1] = value[2] = 0;
     for (int j = 0; j < PARIAN_RESPONSE_POINTS * PARIAN_RESPONSE_POINTS; j++) {
         int a = j % PARIAN_RESPONSE_POINTS, b = j / PARIAN_RESPONSE_POINTS;
         float p[3], at[3];
         for (int k = 0; k < 3; k++) {
-            p[k] = x[k] + side * (response->offset[a] * u[k] + response->offset[b] * v[k]);
+            p[k] = x[k] + response->offset[a] * u[k] + response->offset[b] * v[k];
         }
-        parian_transport_model_eval(response->model, p, n, body->texel_position[o],
-                                    body->texel_normal[o], at);
+        parian_transport_model_eval(response->model, p, body->texel_normal[i],
+                                    body->texel_position[o], body->texel_normal[o], at);
         for (int c = 0; c < 3; c++) {
             value[c] += response->share[a] * response->share[b] * at[c];
         }
+    }
+    disc_mean(response, i, most);
+    for (int c = 0; c < 3; c++) {
+        value[c] = fminf(value[c], most[c]);
     }
 }
 

@@ -47,6 +47,52 @@ static inline void case_body(const parian_env *env, parian_mesh *mesh, parian_bo
     body->kernel_width = 7;
 }
 
+/* Bend a sphere mesh of radius r into a body with hollows, a ridge and an ear; its box is about 2
+ * r. */
+static inline void case_bump(parian_mesh *mesh, double r)
+{
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        double *p = mesh->position[v], x = p[0] / r, y = p[1] / r, z = p[2] / r;
+        double ear2 = (x - 0.6) * (x - 0.6) + (y - 0.6) * (y - 0.6) + (z - 0.5) * (z - 0.5);
+        double s = 1 + 0.18 * sin(3 * x + 1) * cos(2.5 * y) + 0.1 * sin(5 * z + 2 * x);
+        s += 0.25 * exp(-12 * ear2);
+        for (int k = 0; k < 3; k++) {
+            p[k] *= 0.8 * s;
+        }
+    }
+}
+
+/* Irradiance, already transmitted: uniform, from afar, from a point, and a slide of a checkerboard,
+ * 8 squares across, projected along z. `size` is the extent of the body. */
+typedef enum case_light_kind {
+    CASE_UNIFORM,
+    CASE_DIRECTIONAL,
+    CASE_POINT,
+    CASE_CHECKER
+} case_light_kind;
+
+static inline void case_illuminate(const parian_body *body, case_light_kind kind, double size,
+                                   float (*e)[3])
+{
+    for (uint32_t i = 0; i < body->texel_count; i++) {
+        const float *p = body->texel_position[i], *n = body->texel_normal[i];
+        double value = 1, d[3] = {0.6 * size - p[0], 0.2 * size - p[1], size - p[2]};
+        double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        if (kind == CASE_DIRECTIONAL) {
+            value = fmax(0, 0.36 * n[0] + 0.48 * n[1] + 0.8 * n[2]);
+        } else if (kind == CASE_POINT) {
+            value =
+                fmax(0, (n[0] * d[0] + n[1] * d[1] + n[2] * d[2]) / sqrt(r2)) * size * size / r2;
+        } else if (kind == CASE_CHECKER) {
+            int square = (int)floor(8 * p[0] / size + 100) + (int)floor(8 * p[1] / size + 100);
+            value = square & 1 ? fmax(0, n[2]) : 0;
+        }
+        for (int c = 0; c < 3; c++) {
+            e[i][c] = (float)value;
+        }
+    }
+}
+
 /* A flat square of cells x cells quads of `per` x `per` texels of side `texel` metres, all one
  * chart. Texels nearer to the rim than half a window are border texels with their clipped windows
  * as lists. */
