@@ -279,7 +279,7 @@ parian_result parian_remesher_run(const parian_env *env, parian_remesher *remesh
                                  pmp::parameters::edge_is_constrained_map(remesher->feature)
                                      .vertex_is_constrained_map(remesher->corner)
                                      .number_of_iterations(1)
-                                     .number_of_relaxation_steps(1)
+                                     .number_of_relaxation_steps(0)
                                      .do_project(false));
         mesh.collect_garbage();
         return PARIAN_OK;

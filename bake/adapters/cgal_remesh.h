@@ -30,11 +30,11 @@ parian_result parian_remesher_create(const parian_env *env, const parian_mesh *m
                                      const parian_remesher_desc *desc, parian_remesher **remesher);
 void parian_remesher_destroy(parian_remesher *remesher);
 
-/* One round: split edges longer than 4/3 of edge_length, collapse those shorter than 4/5, flip for
- * valence and shape, relax tangentially. Vertices drift off the surface by second order: whoever
- * calls this brings them back through parian_remesher_move. Errors: PARIAN_E_COMPUTE,
- * PARIAN_E_NOMEM. Source: M. Botsch, L. Kobbelt, A remeshing approach to multiresolution modeling,
- * SGP 2004. */
+/* One round without relaxation: split edges longer than 4/3 of edge_length, collapse those shorter
+ * than 4/5, flip for valence and shape. Relaxation is the caller's, through parian_remesher_move:
+ * CGAL's own reads an invalid half-edge where no triangle around a vertex has an area.
+ * Errors: PARIAN_E_COMPUTE, PARIAN_E_NOMEM.
+ * Source: M. Botsch, L. Kobbelt, A remeshing approach to multiresolution modeling, SGP 2004. */
 parian_result parian_remesher_run(const parian_env *env, parian_remesher *remesher,
                                   double edge_length);
 

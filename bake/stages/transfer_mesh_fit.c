@@ -81,31 +81,62 @@ static void take_positions(parian_mesh *mesh, double (*wanted)[3])
     }
 }
 
-parian_result parian_transfer_project(const parian_env *env, const parian_closest *source,
-                                      const bool *fixed, double reach, parian_mesh *mesh)
+/* To the middle of the neighbours, within the tangent plane. sum, count: [vertex_count], zeroed. */
+static void relax(const parian_mesh *mesh, const bool *fixed, const double (*normal)[3],
+                  double (*sum)[3], uint32_t *count, double (*wanted)[3])
+{
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        for (int corner = 0; corner < 3; corner++) {
+            uint32_t v = mesh->triangle[t][corner];
+            count[v] += 2;
+            for (int k = 0; k < 3; k++) {
+                sum[v][k] += mesh->position[mesh->triangle[t][(corner + 1) % 3]][k] +
+                             mesh->position[mesh->triangle[t][(corner + 2) % 3]][k];
+            }
+        }
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        double move[3];
+        for (int k = 0; k < 3; k++) {
+            move[k] = fixed[v] ? 0.0 : sum[v][k] / count[v] - mesh->position[v][k];
+        }
+        double along = parian_dot3(move, normal[v]);
+        for (int k = 0; k < 3; k++) {
+            wanted[v][k] = mesh->position[v][k] + move[k] - along * normal[v][k];
+        }
+    }
+}
+
+parian_result parian_transfer_relax(const parian_env *env, const parian_closest *source,
+                                    const bool *fixed, double reach, parian_mesh *mesh)
 {
     parian_result result = PARIAN_E_NOMEM;
-    double(*normal)[3] = NULL, (*wanted)[3] = NULL;
+    uint32_t vertex_count = mesh->vertex_count, *count = NULL;
+    double(*normal)[3] = NULL, (*wanted)[3] = NULL, (*sum)[3] = NULL;
     parian_closest_hit *hit = NULL;
-    if (!PARIAN_NEW(env, normal, mesh->vertex_count) ||
-        !PARIAN_NEW(env, wanted, mesh->vertex_count) || !PARIAN_NEW(env, hit, mesh->vertex_count)) {
-        result = parian_fail(env, PARIAN_E_NOMEM, "transfer mesh: out of memory for projection");
+    if (!PARIAN_NEW(env, normal, vertex_count) || !PARIAN_NEW(env, wanted, vertex_count) ||
+        !PARIAN_NEW0(env, sum, vertex_count) || !PARIAN_NEW0(env, count, vertex_count) ||
+        !PARIAN_NEW(env, hit, vertex_count)) {
+        result = parian_fail(env, PARIAN_E_NOMEM, "transfer mesh: out of memory to relax");
         goto done;
     }
     make_vertex_normals(mesh, normal);
-    parian_closest_query query = {mesh->vertex_count, (const double(*)[3])mesh->position,
+    relax(mesh, fixed, (const double(*)[3])normal, sum, count, wanted);
+    parian_closest_query query = {vertex_count, (const double(*)[3])wanted,
                                   (const double(*)[3])normal, agree_cosine_min, reach};
     result = parian_closest_find(env, source, &query, hit);
     if (result != PARIAN_OK) {
         goto done;
     }
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+    for (uint32_t v = 0; v < vertex_count; v++) {
         bool stay = fixed[v] || hit[v].distance > reach;
         memcpy(wanted[v], stay ? mesh->position[v] : hit[v].point, sizeof wanted[0]);
     }
     take_positions(mesh, wanted);
 done:
     parian_free(env, hit);
+    parian_free(env, count);
+    parian_free(env, sum);
     parian_free(env, wanted);
     parian_free(env, normal);
     return result;

@@ -42,15 +42,16 @@ parian_result parian_transfer_decimate(const parian_env *env, const parian_mesh 
 parian_result parian_transfer_remesh(const parian_env *env, const parian_closest *source,
                                      transfer_part *part);
 
-/* transfer_mesh_untangle.c: move vertices that are not fixed ([vertex_count]) around triangles that are
- * next to nothing towards the middle of their neighbours, where that helps. */
+/* transfer_mesh_untangle.c: move vertices that are not fixed ([vertex_count]) around triangles that
+ * are next to nothing towards the middle of their neighbours, where that helps. */
 parian_result parian_transfer_untangle(const parian_env *env, const bool *fixed, parian_mesh *mesh);
 
-/* transfer_mesh_fit.c: move the vertices of mesh that are not fixed ([vertex_count]) onto the
- * source surface (project), or along their normals to where the mesh as a whole lies closest to it
- * (fit). A move of more than reach, or one that would turn a triangle over, is not made. */
-parian_result parian_transfer_project(const parian_env *env, const parian_closest *source,
-                                      const bool *fixed, double reach, parian_mesh *mesh);
+/* transfer_mesh_fit.c: move the vertices of mesh that are not fixed ([vertex_count]) to the middle
+ * of their neighbours and from there onto the source surface (relax), or along their normals to
+ * where the mesh as a whole lies closest to it (fit). A move of more than reach, or one that would
+ * turn a triangle over, is not made. */
+parian_result parian_transfer_relax(const parian_env *env, const parian_closest *source,
+                                    const bool *fixed, double reach, parian_mesh *mesh);
 parian_result parian_transfer_fit(const parian_env *env, const parian_closest *source,
                                   const bool *fixed, double reach, parian_mesh *mesh);
 

@@ -28,15 +28,15 @@ static double edge_for_target(const transfer_part *part)
     return sqrt(2.0 * part->area / (sqrt(3.0) * part->target));
 }
 
-/* Bring the vertices back to the source after a round. */
-static parian_result bring_back(const parian_env *env, const parian_closest *source,
-                                parian_remesher *remesher, double reach)
+/* Relax the mesh along the source after a round. */
+static parian_result relax_round(const parian_env *env, const parian_closest *source,
+                                 parian_remesher *remesher, double reach)
 {
     parian_mesh mesh = {0};
     bool *on_feature = NULL;
     parian_result result = parian_remesher_copy(env, remesher, &mesh, &on_feature);
     if (result == PARIAN_OK) {
-        result = parian_transfer_project(env, source, on_feature, reach, &mesh);
+        result = parian_transfer_relax(env, source, on_feature, reach, &mesh);
     }
     if (result == PARIAN_OK) {
         parian_remesher_move(remesher, (const double(*)[3])mesh.position);
@@ -64,7 +64,7 @@ static parian_result run_rounds(const parian_env *env, const parian_closest *sou
         }
         parian_result result = parian_remesher_run(env, remesher, length);
         if (result == PARIAN_OK) {
-            result = bring_back(env, source, remesher, edge);
+            result = relax_round(env, source, remesher, edge);
         }
         if (result != PARIAN_OK) {
             return result;
@@ -94,7 +94,7 @@ static parian_result finish(const parian_env *env, const parian_closest *source,
         result = parian_transfer_untangle(env, on_feature, &part->result);
     }
     if (result == PARIAN_OK) {
-        result = parian_transfer_project(env, source, on_feature, reach, &part->result);
+        result = parian_transfer_relax(env, source, on_feature, reach, &part->result);
     }
     if (result == PARIAN_OK) {
         result = parian_transfer_fit(env, source, on_feature, reach, &part->result);
