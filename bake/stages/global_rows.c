@@ -11,10 +11,28 @@
 #include "core/half.h"
 #include "core/lanes.h"
 #include "core/memory.h"
+#include "core/small_maths.h"
 
 enum { GAP_MAX = 4, SCALED_EXPONENT = 13, BISECTIONS = 14 };
 /* Squared distances over 8 (bias_v + bias_u), which is the squared edge of an equilateral mesh. */
 static const float PREFILTER_FROM = 1.5f, PREFILTER_FULL = 2.4f, PREFILTER_TO = 144;
+
+static parian_result make_caps(const parian_env *env, parian_row_maker *maker)
+{
+    uint32_t count = maker->body->vertex_count;
+    if (!PARIAN_NEW(env, maker->cap, count)) {
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for the caps of %u vertices", count);
+    }
+    for (uint32_t v = 0; v < count; v++) {
+        double area = maker->frame.area[v];
+        for (int c = 0; c < 3; c++) {
+            const parian_dipole *d = &maker->model.dipole[c];
+            double energy = parian_dipole_disc_energy(d, sqrt(area / PARIAN_PI));
+            maker->cap[v][c] = (float)(area > 0 ? energy / area : parian_dipole_rd(d, 0));
+        }
+    }
+    return PARIAN_OK;
+}
 
 parian_result parian_row_maker_make(const parian_env *env, const parian_global_desc *desc,
                                     const parian_body *body, parian_row_maker *maker)
@@ -23,7 +41,6 @@ parian_result parian_row_maker_make(const parian_env *env, const parian_global_d
     bool diagonal = split || body->local_form == PARIAN_LOCAL_NONE;
     memset(maker, 0, sizeof *maker);
     maker->body = body;
-    maker->prefilter = !body->paper_form;
     maker->threshold = desc && desc->threshold != 0 ? desc->threshold : 0.002;
     maker->threshold_absolute = desc ? desc->threshold_absolute : 0;
     if (body->paper_form && maker->threshold_absolute <= 0) {
@@ -33,6 +50,9 @@ parian_result parian_row_maker_make(const parian_env *env, const parian_global_d
         env, body, split ? PARIAN_MODEL_FAR : PARIAN_MODEL_FULL, &maker->model);
     if (result == PARIAN_OK) {
         result = parian_vertex_frame_make(env, body, &maker->frame);
+    }
+    if (result == PARIAN_OK && !body->paper_form) {
+        result = make_caps(env, maker);
     }
     if (result == PARIAN_OK && diagonal && !body->paper_form) {
         if (!PARIAN_NEW(env, maker->total, body->vertex_count)) {
@@ -49,6 +69,7 @@ void parian_row_maker_free(const parian_env *env, parian_row_maker *maker)
     parian_transport_model_free(env, &maker->model);
     parian_vertex_frame_free(env, &maker->frame);
     parian_free(env, maker->total);
+    parian_free(env, maker->cap);
     memset(maker, 0, sizeof *maker);
 }
 
@@ -102,7 +123,14 @@ static void prefilter_one(const parian_row_maker *maker, uint32_t v, uint32_t u,
 {
     float kappa = maker->frame.bias[v] + maker->frame.bias[u], plain[3], laplacian[3];
     float t = row->r2[u] / (8 * kappa);
-    if (!(t > PREFILTER_FROM && t < PREFILTER_TO)) {
+    if (!(t > PREFILTER_FROM)) {
+        for (int c = 0; c < 3; c++) { /* vertices far nearer than their areas let expect */
+            float cap = fminf(maker->cap[v][c], maker->cap[u][c]);
+            row->value[c][u] = fminf(row->value[c][u], cap);
+        }
+        return;
+    }
+    if (t > PREFILTER_TO) {
         return;
     }
     float ramp = (t - PREFILTER_FROM) / (PREFILTER_FULL - PREFILTER_FROM);
@@ -144,7 +172,7 @@ void parian_row_compute(const parian_row_maker *maker, uint32_t v, parian_row_wo
     const parian_row *row = &work->row;
     parian_transport_model_row(&maker->model, maker->body->vertex_position[v],
                                maker->frame.normal[v], false, points, row->r2, row->value);
-    if (maker->prefilter) {
+    if (maker->cap) {
         prefilter_row(maker, v, row);
     }
     for (int c = 0; c < 3; c++) {

@@ -15,7 +15,7 @@ typedef struct parian_row_maker {
     parian_transport_model model;
     parian_vertex_frame frame;
     float (*total)[3]; /* row sums that the diagonal brings about; NULL: the diagonal is zero */
-    bool prefilter;
+    float (*cap)[3];   /* mean of R_d over a disc of the vertex's area; NULL without prefilter */
     double threshold, threshold_absolute; /* as parian_global_desc, resolved; below 0: keep all */
 } parian_row_maker;
 

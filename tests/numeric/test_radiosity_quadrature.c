@@ -13,7 +13,7 @@
 #include "bake/stages/transport.h"
 #include "support/transport_case.h"
 
-enum { RECEIVERS = 100 };
+enum { RECEIVERS = 50 };
 
 static void make_surface(const parian_env *env, double size, unsigned cuts, uint32_t atlas,
                          bool bumpy, const parian_medium *medium, parian_body *body)
@@ -83,7 +83,7 @@ static void check_medium(const parian_medium *medium, parian_local_form form, do
     parian_kernels kernels;
     parian_plan_desc desc = {.local_form = form};
     char what[80];
-    make_surface(env, 0.05, 24, 400, true, medium, &body);
+    make_surface(env, 0.05, 22, 320, true, medium, &body);
     bake_transport(env, &desc, &body, &plan, &kernels);
     assert_true(plan.local && plan.global && body.local_form == form);
     snprintf(what, sizeof what, "%s form %d", medium->name, form);
