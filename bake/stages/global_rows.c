@@ -13,7 +13,7 @@
 #include "core/memory.h"
 #include "core/small_maths.h"
 
-enum { GAP_MAX = 4, SCALED_EXPONENT = 13, BISECTIONS = 14 };
+enum { GAP_MAX = 8, RUN_STEP = 8, SCALED_EXPONENT = 13, BISECTIONS = 14 };
 /* Squared distances over 8 (bias_v + bias_u), which is the squared edge of an equilateral mesh. */
 static const float PREFILTER_FROM = 1.5f, PREFILTER_FULL = 2.4f, PREFILTER_TO = 144;
 
@@ -109,36 +109,69 @@ void parian_run_list_free(const parian_env *env, parian_run_list *list)
 /* Linear interpolation at both ends widens R_d by kappa times its Laplacian. The factor takes that
  * off beforehand, as R / (1 + kappa L / R), which never changes sign; nothing in the first ring,
  * where R_d and hats have nothing in common and the blend takes over. */
-static float prefilter_factor(float value, float laplacian, float kappa, float strength)
+static float prefilter_factor(float value, float widening, float strength)
 {
     if (!(value > 0)) {
         return 1;
     }
-    float ratio = strength * kappa * laplacian / value;
+    float ratio = strength * widening / value;
     return ratio > 0 ? 1 / (1 + ratio) : fminf(1 - ratio, 2.0f);
 }
 
+/* How far a pair is from the first ring, 0 to 1. Opposite sides of a sheet are never neighbours on
+ * the surface, however near they are. */
+static float prefilter_strength(float t, float facing)
+{
+    float ramp = (t - PREFILTER_FROM) / (PREFILTER_FULL - PREFILTER_FROM);
+    if (facing < 0 || ramp >= 1) {
+        return 1;
+    }
+    return ramp > 0 ? ramp * ramp * (3 - 2 * ramp) : 0;
+}
+
+/* Share of the squared distance that lies along a normal. */
+static float normal_share(const double d[3], const float n[3], float r2)
+{
+    double along = d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
+    return (float)fmin(1, along * along / r2);
+}
+
+/* Vertices far nearer than their areas let expect. */
+static void cap_one(const parian_row_maker *maker, uint32_t v, uint32_t u, const parian_row *row)
+{
+    for (int c = 0; c < 3; c++) {
+        float cap = fminf(maker->cap[v][c], maker->cap[u][c]);
+        row->value[c][u] = fminf(row->value[c][u], cap);
+    }
+}
+
+/* Each end widens R_d by its bias times the Laplacian over its own tangent plane, which is
+ * 4 f' + 4 (r^2 - a^2) f'' for a point a away from that plane (f a function of r^2). */
 static void prefilter_one(const parian_row_maker *maker, uint32_t v, uint32_t u,
                           const parian_row *row)
 {
-    float kappa = maker->frame.bias[v] + maker->frame.bias[u], plain[3], laplacian[3];
-    float t = row->r2[u] / (8 * kappa);
+    const parian_vertex_frame *frame = &maker->frame;
+    float r2 = row->r2[u], plain[3], laplacian[3], slope[3];
+    const float *nv = frame->normal[v], *nu = frame->normal[u];
+    float t = r2 / (8 * (frame->bias[v] + frame->bias[u]));
+    float strength = prefilter_strength(t, nv[0] * nu[0] + nv[1] * nu[1] + nv[2] * nu[2]);
     if (!(t > PREFILTER_FROM)) {
-        for (int c = 0; c < 3; c++) { /* vertices far nearer than their areas let expect */
-            float cap = fminf(maker->cap[v][c], maker->cap[u][c]);
-            row->value[c][u] = fminf(row->value[c][u], cap);
-        }
+        cap_one(maker, v, u, row);
+    }
+    if (!(strength > 0 && t < PREFILTER_TO && r2 > 0)) {
         return;
     }
-    if (t > PREFILTER_TO) {
-        return;
-    }
-    float ramp = (t - PREFILTER_FROM) / (PREFILTER_FULL - PREFILTER_FROM);
-    float strength = ramp < 1 ? ramp * ramp * (3 - 2 * ramp) : 1;
-    parian_radial_eval(&maker->model.value, row->r2[u], plain);
-    parian_radial_eval(&maker->model.laplacian, row->r2[u], laplacian);
+    double d[3];
+    parian_sub3(maker->body->vertex_position[u], maker->body->vertex_position[v], d);
+    float off_v = normal_share(d, nv, r2), off_u = normal_share(d, nu, r2);
+    parian_radial_eval(&maker->model.value, r2, plain);
+    parian_radial_eval(&maker->model.laplacian, r2, laplacian);
+    parian_radial_eval(&maker->model.slope, r2, slope);
     for (int c = 0; c < 3; c++) {
-        row->value[c][u] *= prefilter_factor(plain[c], laplacian[c], kappa, strength);
+        float curved = laplacian[c] - 4 * slope[c];
+        float widening = frame->bias[v] * (4 * slope[c] + (1 - off_v) * curved) +
+                         frame->bias[u] * (4 * slope[c] + (1 - off_u) * curved);
+        row->value[c][u] *= prefilter_factor(plain[c], widening, strength);
     }
 }
 
@@ -258,18 +291,25 @@ static void mark_kept(float *const weighted[3], const float bound[3], uint32_t p
     }
 }
 
-/* Join runs that are at most GAP_MAX columns apart: four factors cost less than another run. */
-static void fill_gaps(uint8_t *keep, uint32_t count)
+/* Join runs that are at most GAP_MAX columns apart, and round their lengths up to RUN_STEP: a few
+ * more factors cost less than another run, or than a rest that does not fill a vector. */
+static void round_runs(uint8_t *keep, uint32_t count)
 {
-    uint32_t gap_begin = UINT32_MAX;
-    for (uint32_t i = 0; i < count; i++) {
-        if (!keep[i]) {
-            continue;
+    for (uint32_t begin = 0; begin < count;) {
+        const uint8_t *next = memchr(keep + begin, 1, count - begin);
+        if (!next) {
+            return;
         }
-        if (gap_begin < i && i - gap_begin <= GAP_MAX) {
-            memset(keep + gap_begin, 1, i - gap_begin);
+        begin = (uint32_t)(next - keep);
+        uint32_t end = begin, gap = 0;
+        for (uint32_t i = begin; i < count && gap <= GAP_MAX; i++) {
+            gap = keep[i] ? 0 : gap + 1;
+            end = keep[i] ? i + 1 : end;
         }
-        gap_begin = i + 1;
+        end = begin + (end - begin + RUN_STEP - 1) / RUN_STEP * RUN_STEP;
+        end = end < count ? end : count;
+        memset(keep + begin, 1, end - begin);
+        begin = end;
     }
 }
 
@@ -338,7 +378,7 @@ void parian_row_choose(const parian_row_maker *maker, parian_row_work *work,
         choice->scale[c] = choose_scale(largest(work->row.value[c], padded));
     }
     mark_kept(work->weighted, bound, padded, work->keep);
-    fill_gaps(work->keep, count);
+    round_runs(work->keep, count);
     for (int c = 0; c < 3; c++) {
         double lost = sum_unkept(work->weighted[c], work->keep, padded);
         choice->lost[c] = choice->sum[c] > 0 ? lost / choice->sum[c] : 0;

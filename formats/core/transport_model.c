@@ -48,6 +48,19 @@ static double tabulate_laplacian(const void *context, int channel, double r2)
     return 4 * ((f2 - f0) / (2 * h) + s * (f2 - 2 * f1 + f0) / (h * h));
 }
 
+/* f' by differences in r2; the closed form where nothing is cut. */
+static double tabulate_slope(const void *context, int channel, double r2)
+{
+    const parian_transport_model *model = context;
+    if (model->share == PARIAN_MODEL_FULL) {
+        return parian_dipole_slope(&model->dipole[channel], r2);
+    }
+    double h = 1e-3 * (r2 + model->z_min * model->z_min), s = fmax(r2, h);
+    return (parian_transport_model_exact(model, channel, s + h) -
+            parian_transport_model_exact(model, channel, s - h)) /
+           (2 * h);
+}
+
 static double tabulate_gradient(const void *context, int channel, double q2)
 {
     const parian_transport_model *model = context;
@@ -108,6 +121,9 @@ parian_result parian_transport_model_make(const parian_env *env, const parian_bo
         result = parian_radial_table_make(env, tabulate_laplacian, model, offset, reach,
                                           &model->laplacian);
     }
+    if (result == PARIAN_OK) {
+        result = parian_radial_table_make(env, tabulate_slope, model, offset, reach, &model->slope);
+    }
     if (result == PARIAN_OK && model->flux) {
         result = parian_radial_table_make(env, tabulate_gradient, model, offset / 16, reach + z_max,
                                           &model->gradient);
@@ -122,6 +138,7 @@ void parian_transport_model_free(const parian_env *env, parian_transport_model *
 {
     parian_radial_table_free(env, &model->value);
     parian_radial_table_free(env, &model->laplacian);
+    parian_radial_table_free(env, &model->slope);
     parian_radial_table_free(env, &model->gradient);
 }
 

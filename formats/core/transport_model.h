@@ -26,6 +26,7 @@ typedef struct parian_transport_model {
     double z_min;                  /* smallest z_r of a channel that scatters, m */
     parian_radial_table value;     /* the share of the distance-only R_d */
     parian_radial_table laplacian; /* its Laplacian over a plane, m^-4 */
+    parian_radial_table slope;     /* its derivative with respect to squared distance, m^-4 */
     parian_radial_table gradient;  /* flux only: alpha'/4pi (1 + s q) e^(-s q) / q^3 by q^2 */
 } parian_transport_model;
 
