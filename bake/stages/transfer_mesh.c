@@ -10,6 +10,7 @@
 enum { DEFAULT_TARGET = 10000, SAMPLE_COUNT = 20000, PART_SAMPLES_MIN = 64 };
 enum { PART_TARGET_MIN = 4, PART_TARGET_GOOD = 24 };
 static const double count_tolerance = 0.05;
+static const double sliver_area = 1e-6; /* of the mean */
 static const char progress_name[] = "transfer mesh";
 
 /* Share the target by area; small parts get a floor, which the others pay for. */
@@ -142,6 +143,23 @@ static void warn_about_count(const parian_env *env, uint32_t target, uint32_t pa
     }
 }
 
+/* Sources with parts far thinner than an edge can leave triangles that no move opens. */
+static void warn_about_slivers(const parian_env *env, const parian_mesh *mesh, double area)
+{
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *c = mesh->triangle[t];
+        double n[3];
+        area_vector(mesh->position[c[0]], mesh->position[c[1]], mesh->position[c[2]], n);
+        count += 0.5 * norm(n) * mesh->triangle_count < sliver_area * area;
+    }
+    if (count) {
+        parian_log(env, PARIAN_LOG_WARNING,
+                   "transfer mesh: %u triangles have less than a millionth of the mean area",
+                   count);
+    }
+}
+
 static parian_result check_source(const parian_env *env, const parian_mesh *source, double *area)
 {
     *area = parian_mesh_area(source);
@@ -184,6 +202,7 @@ parian_result parian_stage_transfer_mesh(const parian_env *env, const parian_mes
         summary.area_ratio = parian_mesh_area(&made) / area;
         summary.source_is_denser = source->vertex_count > made.vertex_count;
         warn_about_count(env, target, count, &summary);
+        warn_about_slivers(env, &made, area);
         *transfer = made;
         *report = summary;
         parian_progress(env, progress_name, 1.0);

@@ -42,8 +42,9 @@ parian_result parian_transfer_decimate(const parian_env *env, const parian_mesh 
 parian_result parian_transfer_remesh(const parian_env *env, const parian_closest *source,
                                      transfer_part *part);
 
-/* transfer_mesh_untangle.c: move vertices that are not fixed ([vertex_count]) around triangles that
- * are next to nothing towards the middle of their neighbours, where that helps. */
+/* transfer_mesh_untangle.c: move vertices around triangles that are next to nothing towards the
+ * middle of their neighbours, where that helps; the fixed ones ([vertex_count]) only around the
+ * worst. */
 parian_result parian_transfer_untangle(const parian_env *env, const bool *fixed, parian_mesh *mesh);
 
 /* transfer_mesh_fit.c: move the vertices of mesh that are not fixed ([vertex_count]) to the middle

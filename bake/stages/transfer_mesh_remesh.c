@@ -99,6 +99,9 @@ static parian_result finish(const parian_env *env, const parian_closest *source,
     if (result == PARIAN_OK) {
         result = parian_transfer_fit(env, source, on_feature, reach, &part->result);
     }
+    if (result == PARIAN_OK) {
+        result = parian_transfer_untangle(env, on_feature, &part->result);
+    }
     parian_free(env, on_feature);
     return result;
 }

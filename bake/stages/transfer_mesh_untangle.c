@@ -9,7 +9,9 @@
 #include "core/memory.h"
 
 enum { SWEEPS = 4, TRIALS = 3 };
-static const double quality_min = 0.03; /* below it, a triangle counts as next to nothing */
+/* Below it, a triangle counts as next to nothing; features are left alone unless it is far below.
+ */
+static const double quality_min = 0.03, quality_min_fixed = 1e-3;
 
 /* The triangles around each vertex: triangle[offset[v]] to triangle[offset[v + 1] - 1]. */
 typedef struct vertex_fans {
@@ -89,12 +91,12 @@ static void find_ring_centroid(const parian_mesh *mesh, const vertex_fans *fans,
     }
 }
 
-static bool has_sliver(const parian_mesh *mesh, const vertex_fans *fans, uint32_t v)
+static bool has_sliver(const parian_mesh *mesh, const vertex_fans *fans, uint32_t v, double quality)
 {
     for (uint32_t i = fans->offset[v]; i < fans->offset[v + 1]; i++) {
         double n[3], squares;
         measure_triangle(mesh, fans->triangle[i], n, &squares);
-        if (2.0 * sqrt(3.0) * norm(n) <= quality_min * squares) {
+        if (2.0 * sqrt(3.0) * norm(n) <= quality * squares) {
             return true;
         }
     }
@@ -137,7 +139,7 @@ parian_result parian_transfer_untangle(const parian_env *env, const bool *fixed,
     for (int sweep = 0; sweep < SWEEPS && moved; sweep++) {
         moved = false;
         for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-            if (!fixed[v] && has_sliver(mesh, &fans, v)) {
+            if (has_sliver(mesh, &fans, v, fixed[v] ? quality_min_fixed : quality_min)) {
                 moved = improve(mesh, &fans, v) || moved;
             }
         }

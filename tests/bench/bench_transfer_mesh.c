@@ -50,6 +50,19 @@ static uint32_t count_folds(const parian_env *env, const parian_mesh *mesh)
     return folds;
 }
 
+/* Triangles with less than a millionth of the mean area. */
+static uint32_t count_slivers(const parian_mesh *mesh)
+{
+    double mean = parian_mesh_area(mesh) / mesh->triangle_count;
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        parian_mesh one = {
+            mesh->vertex_count, 1, mesh->position, mesh->triangle + t, NULL, NULL, NULL};
+        count += parian_mesh_area(&one) < 1e-6 * mean;
+    }
+    return count;
+}
+
 /* Centroids of the transfer triangles, repeated: QUERY_COUNT queries on the source. */
 static double time_closest(const parian_env *env, const parian_mesh *source,
                            const parian_mesh *transfer)
@@ -94,10 +107,11 @@ static void bench_mesh(const parian_env *env, const char *name, const parian_mes
         printf("%-32s %s\n", name, parian_result_text(result));
         return;
     }
-    printf("%-32s %7u %6u %6.2f %7.2f %6.4f %7.4f %6.3f %6.4f %5.3f %5u\n", name,
+    printf("%-32s %7u %6u %6.2f %7.2f %6.4f %7.4f %6.3f %6.4f %5.3f %5u %7u\n", name,
            source->vertex_count, r.vertex_count, seconds, time_closest(env, source, &transfer),
            r.quality_mean, r.distance_rms_m / r.edge_mean_m, r.distance_max_m / r.edge_mean_m,
-           r.area_ratio, r.edge_min_m / r.edge_mean_m, count_folds(env, &transfer));
+           r.area_ratio, r.edge_min_m / r.edge_mean_m, count_folds(env, &transfer),
+           count_slivers(&transfer));
     parian_mesh_free(env, &transfer);
 }
 
@@ -132,8 +146,8 @@ int main(int argc, char **argv)
         vertices = (uint32_t)strtoul(argv[2], NULL, 10);
         first = 3;
     }
-    printf("%-32s %7s %6s %6s %7s %6s %7s %6s %6s %5s %5s\n", "source", "from", "to", "s", "160k s",
-           "qualit", "rms/e", "max/e", "area", "e min", "folds");
+    printf("%-32s %7s %6s %6s %7s %6s %7s %6s %6s %5s %5s %7s\n", "source", "from", "to", "s",
+           "160k s", "qualit", "rms/e", "max/e", "area", "e min", "folds", "slivers");
     for (int i = first; i < argc; i++) {
         bench_model(env, argv[i], vertices);
         fflush(stdout);
