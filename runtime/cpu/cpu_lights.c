@@ -47,6 +47,7 @@ static parian_result draw_caster(const parian_env *env, uint32_t size,
                                .triangle_count = count,
                                .triangle = triangle,
                                .position = position,
+                               .near_w = layer->perspective ? layer->near_m : 0.0f,
                                .fragment = shadow_fragment,
                                .context = &target};
     for (int k = 0; k < 4; k++) {

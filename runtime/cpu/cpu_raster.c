@@ -45,35 +45,45 @@ static uint32_t clamp_pixel(double at, uint32_t side)
     return at <= 0.0 ? 0 : at >= side ? side : (uint32_t)at;
 }
 
+static void grow_box(double low[2], double high[2], double x, double y, double w)
+{
+    low[0] = fmin(low[0], x / w);
+    high[0] = fmax(high[0], x / w);
+    low[1] = fmin(low[1], y / w);
+    high[1] = fmax(high[1], y / w);
+}
+
+/* The box of what is in front: corners, and the points where edges come to the front. */
 static void find_box(const parian_raster_desc *desc, const double corner[3][3], raster_setup *setup)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    int behind = 0;
+    double most = fmax(corner[0][2], fmax(corner[1][2], corner[2][2]));
+    double front = fmax((double)desc->near_w, 1e-6 * most);
+    *setup = (raster_setup){.x0 = 0};
+    if (most < front || most <= 0.0) {
+        return;
+    }
     for (int k = 0; k < 3; k++) {
-        behind += corner[k][2] <= 0.0;
-        for (int axis = 0; axis < 2; axis++) {
-            low[axis] = fmin(low[axis], corner[k][axis] / corner[k][2]);
-            high[axis] = fmax(high[axis], corner[k][axis] / corner[k][2]);
+        const double *a = corner[k], *b = corner[(k + 1) % 3];
+        if (a[2] >= front) {
+            grow_box(low, high, a[0], a[1], a[2]);
+        }
+        if ((a[2] >= front) != (b[2] >= front)) {
+            double t = (front - a[2]) / (b[2] - a[2]);
+            grow_box(low, high, a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), front);
         }
     }
-    if (behind == 3) {
-        setup->x0 = setup->x1 = setup->y0 = setup->y1 = 0;
-    } else if (behind > 0) {
-        setup->x0 = setup->y0 = 0;
-        setup->x1 = desc->width;
-        setup->y1 = desc->height;
-    } else {
-        setup->x0 = clamp_pixel(low[0] - 0.5, desc->width);
-        setup->y0 = clamp_pixel(low[1] - 0.5, desc->height);
-        setup->x1 = clamp_pixel(high[0] + 1.5, desc->width);
-        setup->y1 = clamp_pixel(high[1] + 1.5, desc->height);
-    }
+    setup->x0 = clamp_pixel(low[0] - 0.5, desc->width);
+    setup->y0 = clamp_pixel(low[1] - 0.5, desc->height);
+    setup->x1 = clamp_pixel(high[0] + 1.5, desc->width);
+    setup->y1 = clamp_pixel(high[1] + 1.5, desc->height);
 }
 
 static void set_up(const parian_raster_desc *desc, uint32_t triangle, raster_setup *setup)
 {
     double corner[3][3], det = 0.0;
     project(desc, triangle, corner);
+    find_box(desc, (const double(*)[3])corner, setup);
     for (int k = 0; k < 3; k++) {
         const double *a = corner[(k + 1) % 3], *b = corner[(k + 2) % 3];
         setup->edge[k][0] = a[1] * b[2] - a[2] * b[1];
@@ -83,7 +93,6 @@ static void set_up(const parian_raster_desc *desc, uint32_t triangle, raster_set
     for (int axis = 0; axis < 3; axis++) {
         det += corner[0][axis] * setup->edge[0][axis];
     }
-    find_box(desc, (const double(*)[3])corner, setup);
     if (det == 0.0 || !isfinite(1.0 / det)) {
         setup->x1 = setup->x0; /* seen edge-on */
         return;

@@ -26,14 +26,6 @@ static parian_renderer *make_gl(const parian_env *env, const parian_scene *scene
     return renderer;
 }
 
-static parian_renderer *make_cpu(const parian_env *env, const parian_scene *scene)
-{
-    parian_renderer_desc desc = {.backend = PARIAN_BACKEND_CPU, .shadow_size = 512};
-    parian_renderer *renderer = NULL;
-    assert_int_equal(parian_renderer_create(env, scene, &desc, &renderer), PARIAN_OK);
-    return renderer;
-}
-
 /* Share of elements that differ by more than 1e-3 of the largest. */
 static double differing(const float (*a)[3], const float (*b)[3], size_t count)
 {
@@ -120,7 +112,7 @@ static void compare_form(parian_local_form form, bool paper, uint32_t width)
     assert_int_equal(test_sphere(env, 0.01, 9, &mesh), PARIAN_OK);
     assert_int_equal(parian_mesh_make_corner_normals(env, &mesh, 180.0), PARIAN_OK);
     parian_scene *scene = lit_scene(env, &mesh, &desc);
-    parian_renderer *gl = make_gl(env, scene), *cpu = make_cpu(env, scene);
+    parian_renderer *gl = make_gl(env, scene), *cpu = lit_cpu(env, scene, 512);
     assert_int_equal(parian_renderer_set_lights(gl, &open_light, 1), PARIAN_OK);
     assert_int_equal(parian_renderer_set_lights(cpu, &open_light, 1), PARIAN_OK);
     compare_texels(env, gl, cpu, 0.0);
@@ -175,7 +167,7 @@ static void test_light_types(void **state)
     test_lit_desc desc = {.cut = 3};
     assert_int_equal(test_figure(env, 0.02, 10, &mesh), PARIAN_OK);
     parian_scene *scene = lit_scene(env, &mesh, &desc);
-    parian_renderer *gl = make_gl(env, scene), *cpu = make_cpu(env, scene);
+    parian_renderer *gl = make_gl(env, scene), *cpu = lit_cpu(env, scene, 512);
     for (size_t i = 0; i < sizeof lights / sizeof *lights; i++) {
         assert_int_equal(parian_renderer_set_lights(gl, &lights[i], 1), PARIAN_OK);
         assert_int_equal(parian_renderer_set_lights(cpu, &lights[i], 1), PARIAN_OK);
@@ -228,7 +220,7 @@ static void test_pictures(void **state)
                               open_light};
     assert_int_equal(test_tiny_scene(env, PARIAN_LOCAL_F16, 24, &data), PARIAN_OK);
     assert_int_equal(parian_scene_adopt(env, &data, &scene), PARIAN_OK);
-    parian_renderer *gl = make_gl(env, scene), *cpu = make_cpu(env, scene);
+    parian_renderer *gl = make_gl(env, scene), *cpu = lit_cpu(env, scene, 512);
     assert_int_equal(parian_renderer_set_lights(gl, lights, 3), PARIAN_OK);
     assert_int_equal(parian_renderer_set_lights(cpu, lights, 3), PARIAN_OK);
     parian_draw_desc draw = {.camera = lit_camera(eye, WIDTH, HEIGHT),

@@ -37,9 +37,11 @@ static inline parian_scene *lit_sphere(const parian_env *env, float radius, unsi
     return lit_scene(env, &mesh, &desc);
 }
 
-static inline parian_renderer *lit_cpu(const parian_env *env, const parian_scene *scene)
+/* The C evaluation, with shadow maps of a side (0: the default). */
+static inline parian_renderer *lit_cpu(const parian_env *env, const parian_scene *scene,
+                                       uint32_t shadow_size)
 {
-    parian_renderer_desc desc = {.backend = PARIAN_BACKEND_CPU};
+    parian_renderer_desc desc = {.backend = PARIAN_BACKEND_CPU, .shadow_size = shadow_size};
     parian_renderer *renderer = NULL;
     assert_int_equal(parian_renderer_create(env, scene, &desc, &renderer), PARIAN_OK);
     return renderer;

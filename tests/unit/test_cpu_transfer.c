@@ -132,7 +132,7 @@ static void check_form(parian_local_form form, bool paper)
     assert_int_equal(test_sphere(env, 0.01, 8, &mesh), PARIAN_OK);
     assert_int_equal(parian_mesh_make_corner_normals(env, &mesh, 180.0), PARIAN_OK);
     parian_scene *scene = lit_scene(env, &mesh, &desc);
-    parian_renderer *renderer = lit_cpu(env, scene);
+    parian_renderer *renderer = lit_cpu(env, scene, 256);
     const parian_body *body = &scene->data.bodies[0];
     float3_array vertex = parian_zalloc(env, body->vertex_count, sizeof *vertex);
     parian_texel_arrays arrays = {0};
@@ -181,7 +181,7 @@ static void test_threads(void **state)
     parian_scene *scene = lit_sphere(test_env(1), 0.01f, 8, 5);
     static const unsigned threads[3] = {1, 2, 7};
     for (int i = 0; i < 3; i++) {
-        parian_renderer *renderer = lit_cpu(test_env(threads[i]), scene);
+        parian_renderer *renderer = lit_cpu(test_env(threads[i]), scene, 256);
         result[i] = lit_irradiance(test_env(1), scene, renderer, &light);
         parian_renderer_destroy(renderer);
         assert_memory_equal(result[i], result[0], scene->info.texel_count * sizeof *result[i]);
@@ -200,7 +200,7 @@ static void test_pictures(void **state)
     static float picture[SIDE * SIDE][4];
     const parian_env *env = test_env(2);
     parian_scene *scene = lit_sphere(env, 0.02f, 8, 4);
-    parian_renderer *renderer = lit_cpu(env, scene);
+    parian_renderer *renderer = lit_cpu(env, scene, 256);
     const float eye[3] = {1e-4f, 0, 0.15f};
     parian_light head = {
         .type = PARIAN_LIGHT_DIRECTIONAL, .direction = {0, 0, -1}, .color = {1, 1, 1}};
