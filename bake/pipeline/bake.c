@@ -4,14 +4,18 @@
  */
 #include "bake/pipeline/bake.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "core/body_file.h"
 #include "core/memory.h"
 #include "parian/format.h"
+#include "tool/files.h"
 #include "tool/lights_file.h"
 #include "tool/session.h"
+
+enum { PATH_MAX_LENGTH = 4096 };
 
 typedef struct bake_state {
     const parian_bake_desc *desc;
@@ -127,17 +131,24 @@ static parian_result write_asset(const parian_env *env, bake_state *state)
     double start = parian_seconds();
     parian_writer_desc desc = {.path = state->desc->output};
     parian_writer *writer = NULL;
+    char temporary[PATH_MAX_LENGTH]; /* outlives the writer */
     parian_progress(env, "write", 0);
     parian_result r = parian_writer_begin(env, &desc, &writer);
     if (r != PARIAN_OK) {
         return r;
     }
+    snprintf(temporary, sizeof temporary, "%s", parian_writer_temporary(writer));
+    parian_temp_register(temporary);
     r = parian_scene_data_write(writer, &state->scene);
-    if (r != PARIAN_OK || parian_cancelled(env)) {
-        parian_writer_abort(writer);
-        return r != PARIAN_OK ? r : PARIAN_E_INTERRUPTED;
+    if (r == PARIAN_OK && parian_cancelled(env)) {
+        r = PARIAN_E_INTERRUPTED;
     }
-    r = parian_writer_finish(writer);
+    if (r != PARIAN_OK) {
+        parian_writer_abort(writer);
+    } else {
+        r = parian_writer_finish(writer);
+    }
+    parian_temp_unregister(temporary);
     struct stat info;
     if (r == PARIAN_OK && stat(state->desc->output, &info) == 0) {
         state->report.file_size = (uint64_t)info.st_size;

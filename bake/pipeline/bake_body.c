@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <cjson/cJSON.h>
+
 #include "bake/pipeline/bake.h"
 #include "bake/stages/detail.h"
 #include "bake/stages/texels.h"
@@ -81,6 +83,26 @@ static parian_result step_texels(const parian_env *env, body_job *job)
     return r;
 }
 
+/* The plan as the asset carries it. */
+static parian_result store_plan(const parian_env *env, const parian_plan *plan, parian_body *body)
+{
+    cJSON *root = cJSON_CreateObject();
+    cJSON_AddBoolToObject(root, "local", plan->local);
+    cJSON_AddBoolToObject(root, "global", plan->global);
+    cJSON_AddStringToObject(root, "reason", plan->reason);
+    cJSON_AddNumberToObject(root, "error_without_local", plan->error_without_local);
+    cJSON_AddNumberToObject(root, "error_without_global", plan->error_without_global);
+    char *text = cJSON_PrintUnformatted(root);
+    cJSON_Delete(root);
+    size_t size = text ? strlen(text) + 1 : 0;
+    body->plan_json = text ? parian_alloc(env, size, 1) : NULL;
+    if (body->plan_json) {
+        memcpy(body->plan_json, text, size);
+    }
+    cJSON_free(text);
+    return body->plan_json ? PARIAN_OK : parian_fail(env, PARIAN_E_NOMEM, "no memory for the plan");
+}
+
 static parian_result step_plan(const parian_env *env, body_job *job)
 {
     const parian_bake_desc *d = job->desc;
@@ -93,6 +115,7 @@ static parian_result step_plan(const parian_env *env, body_job *job)
     parian_result r = parian_stage_plan(env, &desc, job->body, &job->report->plan);
     if (r == PARIAN_OK) {
         parian_log(env, PARIAN_LOG_INFO, "%s: plan: %s", job->body->name, job->report->plan.reason);
+        r = store_plan(env, &job->report->plan, job->body);
     }
     return r;
 }
