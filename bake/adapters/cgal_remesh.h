@@ -34,7 +34,7 @@ void parian_remesher_destroy(parian_remesher *remesher);
  * than 4/5, flip for valence and shape. Relaxation is the caller's, through parian_remesher_move:
  * CGAL's own reads an invalid half-edge where no triangle around a vertex has an area.
  * Errors: PARIAN_E_COMPUTE, PARIAN_E_NOMEM.
- * Source: M. Botsch, L. Kobbelt, A remeshing approach to multiresolution modeling, SGP 2004. */
+ * Source: [Botsch04] */
 parian_result parian_remesher_run(const parian_env *env, parian_remesher *remesher,
                                   double edge_length);
 

@@ -23,7 +23,7 @@ extern "C" {
  *
  * Errors   PARIAN_E_COMPUTE where the mesh is not an oriented 2-manifold, PARIAN_E_NOMEM
  * Threads  pure function
- * Source   M. Garland, P. Heckbert, Surface simplification using quadric error metrics, 1997 */
+ * Source   [Garland97] */
 parian_result parian_decimate(const parian_env *env, parian_mesh *mesh, const bool *locked,
                               uint32_t vertex_target);
 

@@ -10,7 +10,7 @@
 enum { CURVE_BITS = 20 };
 
 /* Position along the three-dimensional Hilbert curve of cell x, CURVE_BITS per axis.
- * Source: J. Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707 (2004). */
+ * Source: [Skilling04]. */
 static uint64_t hilbert_key(uint32_t x[3])
 {
     for (uint32_t q = 1u << (CURVE_BITS - 1); q > 1; q >>= 1) {
