@@ -23,37 +23,111 @@ static inline float decode(parian_half half)
     return value * 0x1p112f;
 }
 
-PARIAN_CLONES
-static void row_product(const parian_operator *op, uint32_t row, const float (*x)[3], float out[3])
+typedef float float8 __attribute__((vector_size(32)));
+typedef void (*decode_eight)(const parian_half *half, float8 *value);
+
+static inline void decode_plain(const parian_half *half, float8 *value)
 {
-    float lane[LANES] = {0};
+    for (int k = 0; k < 8; k++) {
+        (*value)[k] = decode(half[k]);
+    }
+}
+
+/* sum += decoded halves times values. */
+static inline __attribute__((always_inline)) void
+add_eight(decode_eight decoder, const parian_half *half, const float *value, float8 *sum)
+{
+    float8 factor, other;
+    decoder(half, &factor);
+    memcpy(&other, value, sizeof other);
+    *sum += factor * other;
+}
+
+/* One row. Lane k of the first, second, third vector and of the tail belongs to channel k, k + 8, k
+ * + 16, k modulo 3. Inlined into a function for each decoder. */
+static inline __attribute__((always_inline)) void multiply_row(decode_eight decoder,
+                                                               const parian_operator *op,
+                                                               uint32_t row, const float (*x)[3],
+                                                               float out[3])
+{
+    float8 first = {0}, second = {0}, third = {0};
+    float lane[LANES] = {0}, tail[LANES] = {0};
     for (uint32_t r = op->run_offset[row]; r < op->run_offset[row + 1]; r++) {
-        const parian_half *restrict f = op->factor[op->run_factor[r]];
-        const float *restrict v = x[op->run_column[r]];
-        uint32_t count = 3 * (uint32_t)op->run_count[r], i = 0;
+        const parian_half *f = op->factor[op->run_factor[r]];
+        const float *v = x[op->run_column[r]];
+        uint32_t count = 3 * (uint32_t)op->run_count[r], i = 0, k = 0;
         for (; i + LANES <= count; i += LANES) {
-            for (int k = 0; k < LANES; k++) {
-                lane[k] += decode(f[i + k]) * v[i + k];
-            }
+            add_eight(decoder, f + i, v + i, &first);
+            add_eight(decoder, f + i + 8, v + i + 8, &second);
+            add_eight(decoder, f + i + 16, v + i + 16, &third);
         }
-        for (uint32_t k = 0; i + k < count; k++) {
-            lane[k] += decode(f[i + k]) * v[i + k];
+        if (count - i >= 8) {
+            add_eight(decoder, f + i, v + i, &first);
+            k = 8;
+        }
+        if (count - i >= 16) {
+            add_eight(decoder, f + i + 8, v + i + 8, &second);
+            k = 16;
+        }
+        for (; i + k < count; k++) {
+            tail[k] += decode(f[i + k]) * v[i + k];
         }
     }
+    memcpy(lane, &first, sizeof first);
+    memcpy(lane + 8, &second, sizeof second);
+    memcpy(lane + 16, &third, sizeof third);
     for (int c = 0; c < 3; c++) {
         float sum = 0;
         for (int k = c; k < LANES; k += 3) {
-            sum += lane[k];
+            sum += lane[k] + tail[k];
         }
         out[c] = sum * op->scale[row][c];
     }
 }
+
+static void row_product_plain(const parian_operator *op, uint32_t row, const float (*x)[3],
+                              float out[3])
+{
+    multiply_row(decode_plain, op, row, x, out);
+}
+
+typedef void (*row_product)(const parian_operator *op, uint32_t row, const float (*x)[3],
+                            float out[3]);
+
+#if defined(__GNUC__) && defined(__x86_64__)
+#include <immintrin.h>
+
+__attribute__((target("avx2,f16c"))) static inline void decode_f16c(const parian_half *half,
+                                                                    float8 *value)
+{
+    __m256 eight = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)half));
+    memcpy(value, &eight, sizeof eight);
+}
+
+__attribute__((target("avx2,f16c"))) static void
+row_product_f16c(const parian_operator *op, uint32_t row, const float (*x)[3], float out[3])
+{
+    multiply_row(decode_f16c, op, row, x, out);
+}
+
+static row_product choose_product(void)
+{
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("f16c") ? row_product_f16c
+                                                                            : row_product_plain;
+}
+#else
+static row_product choose_product(void)
+{
+    return row_product_plain;
+}
+#endif
 
 typedef struct apply_job {
     const parian_operator *op;
     const float (*x)[3];
     float (*y)[3];
     bool accumulate;
+    row_product product;
 } apply_job;
 
 static void apply_block(void *context, size_t block)
@@ -63,7 +137,7 @@ static void apply_block(void *context, size_t block)
     last = last < job->op->row_count ? last : job->op->row_count;
     for (uint32_t row = first; row < last; row++) {
         float out[3];
-        row_product(job->op, row, job->x, out);
+        job->product(job->op, row, job->x, out);
         for (int c = 0; c < 3; c++) {
             job->y[row][c] = job->accumulate ? job->y[row][c] + out[c] : out[c];
         }
@@ -74,6 +148,7 @@ void parian_operator_apply(const parian_env *env, const parian_operator *op, con
                            float (*y)[3], bool accumulate)
 {
     apply_job job = {.op = op, .x = x, .y = y, .accumulate = accumulate};
+    job.product = choose_product();
     parian_par(env, (op->row_count + ROWS_PER_BLOCK - 1) / ROWS_PER_BLOCK, apply_block, &job);
 }
 
