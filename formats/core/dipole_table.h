@@ -46,7 +46,7 @@ static inline int32_t parian_radial_cell(const parian_radial_table *table, float
     int32_t bits;
     memcpy(&bits, &x, sizeof bits);
     int32_t cell = (bits >> PARIAN_TABLE_SHIFT) - table->first;
-    int32_t rest = 0x3f800000 | ((bits << PARIAN_TABLE_CELL_BITS) & 0x7fffff);
+    int32_t rest = (int32_t)(0x3f800000u | (((uint32_t)bits << PARIAN_TABLE_CELL_BITS) & 0x7fffffu));
     float fraction;
     memcpy(&fraction, &rest, sizeof fraction);
     *t = fraction - 1.0f;
