@@ -63,11 +63,11 @@ beside() {
 }
 
 say "pictures (parian-view $where)"
-look="--size 800x800 --background 0.02,0.02,0.024"
+look="--size 800x800"
 front="--camera orbit:28,14,2.6"
-key="--light directional:-0.35,-0.6,-0.75:irradiance=3 --exposure 0.5"
-back="--light point:0.03,0.055,-0.09:intensity=0.045 --light directional:0.5,-0.5,-0.6:irradiance=0.06 --exposure 1"
-slide="--light spot:0.05,0.07,0.2:direction=-0.05,-0.045,-0.2:outer=9:image=$demo/slide.png:intensity=0.2 --exposure 0.3"
+key="--light directional:-0.35,-0.6,-0.75:irradiance=3"
+back="--light point:0.03,0.055,-0.09:intensity=0.045 --light directional:0.5,-0.5,-0.6:irradiance=0.06"
+slide="--light spot:0.05,0.07,0.2:direction=-0.05,-0.045,-0.2:outer=9:image=$demo/slide.png:intensity=0.2"
 picture figurine-front figurine $look $front $key
 picture figurine-back figurine $look $front $back
 picture figurine-opaque figurine $look $front $key --view opaque
@@ -75,11 +75,11 @@ picture figurine-back-opaque figurine $look $front $back --view opaque
 picture figurine-local figurine $look $front $key --view local
 picture figurine-global figurine $look $front $key --view global
 picture figurine-slide figurine $look --camera orbit:14,12,2.6 $slide
-picture candle candle $look --camera orbit:20,16
-picture cup cup $look --camera orbit:-30,24 --light point:0,0.035,0:intensity=0.0022 \
-    --light directional:-0.3,-0.7,-0.6:irradiance=0.5 --exposure 1
-picture leaf leaf $look --camera orbit:25,42 --light directional:0.3,0.8,-0.4:irradiance=3 \
-    --light directional:0.4,-1,-0.5:irradiance=0.6 --exposure 1
+picture candle candle $look --camera orbit:20,16,2.7
+picture cup cup $look --camera orbit:-30,24,2.7 --light point:-0.05,0.075,-0.11:intensity=0.03 \
+    --light directional:0.5,-0.8,-0.7:irradiance=0.8
+picture leaf leaf $look --camera orbit:25,42,2.6 --light directional:0.3,0.8,-0.4:irradiance=2 \
+    --light directional:0.4,-1,-0.5:irradiance=1
 beside opaque-translucent figurine-opaque figurine-front figurine-back-opaque figurine-back
 beside local-global-combined figurine-local figurine-global figurine-front
 beside figurine figurine-front figurine-back
