@@ -5,6 +5,7 @@ add_library(parian_flags INTERFACE)
 target_compile_definitions(parian_flags INTERFACE _GNU_SOURCE)
 target_compile_options(parian_flags INTERFACE
   -ffp-contract=off
+  $<$<COMPILE_LANG_AND_ID:C,GNU>:-fno-semantic-interposition>
   $<$<COMPILE_LANGUAGE:C>:-Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -fno-math-errno>
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra>)
 if(PARIAN_SANITIZE)
