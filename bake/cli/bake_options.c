@@ -149,6 +149,9 @@ static parian_result check_options(const raw_options *raw, const parian_string_l
     if (!raw->output && !raw->dump && !raw->report) {
         return usage_error("no output: give -o OUT.parian");
     }
+    if (raw->output && strcmp(raw->output, "-") == 0) {
+        return usage_error("an asset is not written to stdout: give -o OUT.parian");
+    }
     if (raw->kernel_given && raw->kernel % 2 == 0) {
         return usage_error("--kernel must be odd, 3 to 15");
     }

@@ -133,7 +133,10 @@ static parian_result write_asset(const parian_env *env, bake_state *state)
     parian_writer *writer = NULL;
     char temporary[PATH_MAX_LENGTH]; /* outlives the writer */
     parian_progress(env, "write", 0);
-    parian_result r = parian_writer_begin(env, &desc, &writer);
+    parian_result r = parian_folder_create_parent(env, state->desc->output);
+    if (r == PARIAN_OK) {
+        r = parian_writer_begin(env, &desc, &writer);
+    }
     if (r != PARIAN_OK) {
         return r;
     }
@@ -177,7 +180,10 @@ parian_result parian_bake_run(const parian_env *env, const parian_bake_desc *des
 {
     bake_state state = {.desc = desc};
     double start = parian_seconds();
-    parian_result r = import_scene(env, &state);
+    parian_result r = parian_check_outputs(env, desc);
+    if (r == PARIAN_OK) {
+        r = import_scene(env, &state);
+    }
     if (r == PARIAN_OK) {
         r = bake_parts(env, &state);
     }

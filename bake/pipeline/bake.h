@@ -82,6 +82,10 @@ parian_result parian_make_provenance(const parian_env *env, const parian_bake_de
  */
 char *parian_settings_json(const parian_bake_desc *desc);
 
+/* Whether every output named can be written: a name for a file, in a folder that is or can be made;
+ * the asset not over its own input. Nothing is created. Errors: PARIAN_E_IO, PARIAN_E_ARGUMENT. */
+parian_result parian_check_outputs(const parian_env *env, const parian_bake_desc *desc);
+
 /* --dump: every intermediate array as .npy, the atlas as PNG and EXR. */
 parian_result parian_bake_dump(const parian_env *env, const char *folder,
                                const parian_scene_data *scene);

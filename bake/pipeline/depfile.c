@@ -68,6 +68,31 @@ static bool has_suffix(const char *path, const char *suffix)
     return n >= m && strcasecmp(path + n - m, suffix) == 0;
 }
 
+static int hex_digit(char c)
+{
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
+}
+
+/* %20 and the like become the bytes that the file's name has; in place. */
+static void decode_uri(char *uri)
+{
+    char *to = uri;
+    for (const char *from = uri; *from; from++) {
+        int high = *from == '%' ? hex_digit(from[1]) : -1;
+        int low = high >= 0 ? hex_digit(from[2]) : -1;
+        if (low >= 0 && 16 * high + low > 0) {
+            *to++ = (char)(16 * high + low);
+            from += 2;
+        } else {
+            *to++ = *from;
+        }
+    }
+    *to = 0;
+}
+
 /* The files that a .gltf refers to: buffers and images with a uri that is not data. */
 static void append_gltf_files(text_buffer *buffer, const char *input, const char *json)
 {
@@ -81,6 +106,7 @@ static void append_gltf_files(text_buffer *buffer, const char *input, const char
         {
             const cJSON *uri = cJSON_GetObjectItemCaseSensitive(item, "uri");
             if (cJSON_IsString(uri) && strncmp(uri->valuestring, "data:", 5) != 0) {
+                decode_uri(uri->valuestring);
                 append_dependency(buffer, input, folder_length, uri->valuestring);
             }
         }

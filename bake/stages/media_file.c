@@ -101,6 +101,11 @@ static parian_result read_scattering(const medium_file *file, parian_medium *med
     }
     medium->reduced_only = has_reduced && !has_g;
     for (int c = 0; c < PARIAN_CHANNELS; c++) {
+        if (!(fabs(medium->g[c]) < 1)) {
+            return parian_fail(file->env, PARIAN_E_FORMAT,
+                               "%s: \"g\" is %g, expected -1 to 1, both excluded", file->path,
+                               medium->g[c]);
+        }
         medium->sigma_s_prime[c] = has_reduced ? reduced[c] : (1 - medium->g[c]) * full[c];
     }
     return PARIAN_OK;
@@ -113,7 +118,8 @@ static parian_result read_eta(const medium_file *file, double *eta)
         return parian_fail(file->env, PARIAN_E_FORMAT, "%s: \"eta\" is not a number", file->path);
     }
     if (!item) {
-        parian_log(file->env, PARIAN_LOG_WARNING, "%s: \"eta\" is missing, taken as 1.3", file->path);
+        parian_log(file->env, PARIAN_LOG_WARNING, "%s: \"eta\" is missing, taken as 1.3",
+                   file->path);
     }
     *eta = item ? item->valuedouble : 1.3;
     return PARIAN_OK;

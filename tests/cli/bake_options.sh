@@ -34,7 +34,19 @@ expect 5 parian-bake reference "$ply"
 expect 2 parian-bake "$work/absent.ply" --scale 50mm -o "$work/a.parian"
 contains "$err" "absent.ply"
 one_line "$err"
-expect 2 parian-bake "$ply" --scale 50mm -o "$work/no/such/folder/a.parian"
+expect 2 parian-bake "$ply" --scale 50mm -o "$work/tetrahedron.off/below/a.parian"
+contains "$err" "expected a folder"
+one_line "$err"
+expect 2 parian-bake "$ply" --scale 50mm -o "$work"
+expect 2 parian-bake "$ply" --scale 50mm -o /dev/full
+one_line "$err"
+expect 1 parian-bake "$ply" --scale 50mm -o "$ply"
+contains "$err" "is the input"
+expect 1 parian-bake "$ply" --scale 50mm -o -
+expect 2 parian-bake "$ply" --scale 50mm -o "$work/a.parian" --report "$ply/report.json"
+expect 2 parian-bake "$ply" --scale 50mm -o "$work/a.parian" --dump "$ply"
+expect 2 parian-bake "$work/absent.ply" --scale 50mm -o "$work/new/folder/a.parian"
+[ ! -e "$work/new" ] || fail "a failed run left a folder"
 expect 5 parian-bake "$work/model.fbx" --scale 50mm -o "$work/a.parian"
 [ ! -e "$work/a.parian" ] || fail "a failed run left an asset"
 
@@ -49,14 +61,31 @@ cat > "$work/medium.json" <<'JSON'
 {"name": "soap", "sigma_s_prime": [2, 2.5, 3], "sigma_a": 0.01, "eta": 1.4, "unit": "1/mm", "source": "test"}
 JSON
 expect 0 parian-bake "$ply" --scale 20mm --material "$work/medium.json" --transfer-vertices 300 --atlas 64 \
-    -o "$work/soap.parian" --report "$work/soap.json" -MD --dump "$work/dump"
-contains "$work/soap.json" '"soap"'
-contains "$work/soap.parian.d" "medium.json"
+    -o "$work/out/here/soap.parian" --report "$work/out/there/soap.json" -MD --dump "$work/dump"
+contains "$work/out/there/soap.json" '"soap"'
+contains "$work/out/here/soap.parian.d" "medium.json"
 [ -s "$work/dump/texel_position.npy" ] || fail "no texel_position.npy"
 [ -s "$work/dump/body0_atlas.png" ] || fail "no atlas picture"
-expect 0 parian-info validate "$work/soap.parian"
+expect 0 parian-info validate "$work/out/here/soap.parian"
+
+# Names in a .gltf are URIs; the dependency file names the files.
+printf '%s' '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
+{"bufferView":1,"componentType":5121,"count":12,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
+"buffers":[{"uri":"four%20corners.bin","byteLength":60}]}' > "$work/corners.gltf"
+zero='\0\0\0\0' one='\0\0\200\77'
+printf "$zero$zero$zero$one$zero$zero$zero$one$zero$zero$zero$one" > "$work/four corners.bin"
+printf '\0\2\1\0\1\3\1\2\3\0\3\2' >> "$work/four corners.bin"
+expect 0 parian-bake "$work/corners.gltf" --scale 20mm --transfer-vertices 300 --atlas 64 --material marble \
+    -o "$work/corners.parian" -MF "$work/corners.d"
+contains "$work/corners.d" 'four\ corners.bin'
 
 echo '{"sigma_s_prime": [2, -1, 3], "sigma_a": 0.01}' > "$work/bad.json"
 expect 3 parian-bake "$ply" --scale 20mm --material "$work/bad.json" -o "$work/a.parian"
 one_line "$err"
+echo '{"sigma_s": 2, "sigma_a": 0.01, "g": 1.5, "unit": "1/mm"}' > "$work/bad.json"
+expect 3 parian-bake "$ply" --scale 20mm --material "$work/bad.json" -o "$work/a.parian"
+contains "$err" '"g" is 1.5'
 done_ok
