@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "bake/pipeline/bake.h"
+#include "bake/pipeline/named_env.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -86,7 +87,10 @@ static parian_result bake_part(const parian_env *env, bake_state *state, uint32_
     uint32_t b = scene->body_count;
     parian_body_report *report = &state->report.bodies[b];
     parian_bake_desc desc = part_desc(state, part);
-    parian_result r = parian_bake_body(env, &desc, &state->source, part,
+    parian_named_env named;
+    parian_named_env_init(&named, env, desc.input, state->source.parts[part].name,
+                          state->source.part_count > 1);
+    parian_result r = parian_bake_body(&named.env, &desc, &state->source, part,
                                        &state->selection.medium[part], &scene->bodies[b], report);
     if (r == PARIAN_OK) {
         scene->body_count++;

@@ -114,7 +114,7 @@ static parian_result step_plan(const parian_env *env, body_job *job)
                              .paper_form = d->form == PARIAN_FORM_PAPER};
     parian_result r = parian_stage_plan(env, &desc, job->body, &job->report->plan);
     if (r == PARIAN_OK) {
-        parian_log(env, PARIAN_LOG_INFO, "%s: plan: %s", job->body->name, job->report->plan.reason);
+        parian_log(env, PARIAN_LOG_INFO, "plan: %s", job->report->plan.reason);
         r = store_plan(env, &job->report->plan, job->body);
     }
     return r;

@@ -68,6 +68,12 @@ contains "$work/out/here/soap.parian.d" "medium.json"
 [ -s "$work/dump/body0_atlas.png" ] || fail "no atlas picture"
 expect 0 parian-info validate "$work/out/here/soap.parian"
 
+# An error of a stage names the file, a warning the body.
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n' > "$work/flat.off"
+expect 3 parian-bake "$work/flat.off" --scale 20mm --material marble -o "$work/a.parian"
+contains "$err" "$work/flat.off: "
+one_line "$err"
+
 # Names in a .gltf are URIs; the dependency file names the files.
 printf '%s' '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
