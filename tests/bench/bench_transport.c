@@ -17,6 +17,7 @@
 #include "bake/stages/transport.h"
 #include "core/clones.h"
 #include "core/lanes.h"
+#include "cpu/cpu_transfer.h"
 #include "support/transport_case.h"
 #include "tool/session.h"
 
@@ -82,10 +83,38 @@ static double read_bandwidth(const parian_env *env)
     return STREAM_SIZE / median(seconds);
 }
 
-static void bench_product(const parian_env *env, const parian_body *body)
+/* The local filter with interpolation of the vertices' radiosity, as the runtime's C evaluation
+ * does it. */
+static void bench_filter(const parian_env *env, const parian_body *body,
+                         const parian_kernels *kernels, double stream)
+{
+    double seconds[REPEATS];
+    case_light light;
+    float(*radiosity)[3] = calloc(body->vertex_count, sizeof *radiosity);
+    if (!radiosity) {
+        return;
+    }
+    case_light_make(env, body, &light);
+    case_illuminate(body, CASE_DIRECTIONAL, 0.05, light.e);
+    for (int k = 0; k < REPEATS; k++) {
+        double start = parian_seconds();
+        parian_cpu_filter(env, body, kernels, (const float(*)[3])light.e,
+                          (const float(*)[3])radiosity, light.local, light.b);
+        seconds[k] = parian_seconds() - start;
+    }
+    double time = median(seconds);
+    double bytes = 6.0 * (double)(kernels->interior_total + kernels->border_total);
+    printf(
+        "filter    %8.2f ms  %6.2f M taps RGB  %6.2f GB/s of kernels = %.0f %% of %.2f GB/s read\n",
+        time * 1e3, bytes / 6e6, bytes / time * 1e-9, 100 * bytes / time / stream, stream * 1e-9);
+    case_light_free(env, &light);
+    free(radiosity);
+}
+
+static void bench_product(const parian_env *env, const parian_body *body, double stream)
 {
     const parian_operator *op = &body->operators[0];
-    double seconds[REPEATS], stream = read_bandwidth(env);
+    double seconds[REPEATS];
     float(*x)[3] = calloc(body->vertex_count, sizeof *x),
     (*y)[3] = calloc(body->vertex_count, sizeof *y);
     if (!x || !y || !body->operator_count) {
@@ -179,7 +208,11 @@ int main(int argc, char **argv)
         (double)global.factor_count * 1e-6, 100 * global.kept_share, global.lost_mean,
         global.lost_max, blend.fitted, blend.fallback);
     printf("memory    %.0f MB peak\n", (double)parian_peak_memory() * 1e-6);
-    bench_product(env, &body);
+    double stream = read_bandwidth(env);
+    bench_product(env, &body, stream);
+    if (body.local_form != PARIAN_LOCAL_NONE) {
+        bench_filter(env, &body, &kernels, stream);
+    }
     print_errors(env, &body, &kernels, size);
     parian_kernels_free(env, &kernels);
     parian_body_free(env, &body);
