@@ -2,12 +2,12 @@
 set -u
 . "$PARIAN_SOURCE_DIR/tests/support/cli_support.sh"
 need parian-bake
-models figurine
+models --triangles 6000 figurine
 
 bake() { # NAME THREADS options...
     local name=$1 threads=$2
     shift 2
-    expect 0 parian-bake "$work/models/figurine.glb" -q --threads "$threads" --transfer-vertices 1500 --atlas 128 \
+    expect 0 parian-bake "$work/models/figurine.glb" -q --threads "$threads" --transfer-vertices 800 --atlas 128 \
         -o "$work/$name.$threads.parian" "$@"
 }
 for form in "--local rebuilt" "--local f16" "--local u8" "--local split" "--form paper" "--bssrdf dipole-flux"; do
