@@ -7,11 +7,12 @@
 
 #include <string.h>
 
+#include "core/clones.h"
 #include "core/half.h"
 #include "core/memory.h"
 #include "vec3.h"
 
-enum { VERTEX_PIECE = 256, TEXEL_PIECE = 1024 };
+enum { VERTEX_PIECE = 256, TEXEL_PIECE = 1024, LIST_PIECE = 64, WIDTH_MAX = 15 };
 
 typedef struct restrict_job {
     const parian_restriction *restriction;
@@ -60,36 +61,57 @@ typedef struct filter_job {
     float (*local)[3], (*global)[3];
 } filter_job;
 
-static void add_tap(const parian_half tap[3], const float e[3], float sum[3])
+/* lane[i] += tap[i] e[i]: the channels of neighbouring taps lie side by side in both. */
+PARIAN_CLONES
+static void add_products(const float *restrict tap, const float *restrict e, uint32_t count,
+                         float *restrict lane)
 {
-    for (int c = 0; c < 3; c++) {
-        sum[c] += parian_half_to_float(tap[c]) * e[c];
+    for (uint32_t i = 0; i < count; i++) {
+        lane[i] += tap[i] * e[i];
     }
 }
 
-/* Square window around an interior texel; all its texels are owned. */
+static void add_lanes(const float *lane, uint32_t count, float sum[3])
+{
+    for (uint32_t i = 0; i < count; i += 3) {
+        for (int c = 0; c < 3; c++) {
+            sum[c] += lane[i + (uint32_t)c];
+        }
+    }
+}
+
+/* Square window around an interior texel; all its texels are owned, so that a row of it has
+ * consecutive ordinals. */
 static void filter_window(const filter_job *job, uint32_t texel, uint32_t interior, float sum[3])
 {
     const parian_body *body = job->body;
-    uint32_t width = body->kernel_width, half = width / 2;
-    const parian_half(*tap)[3] =
+    uint32_t width = body->kernel_width, half = width / 2, row = 3 * width;
+    float tap[3 * WIDTH_MAX * WIDTH_MAX], lane[3 * WIDTH_MAX] = {0};
+    const parian_half(*stored)[3] =
         (const parian_half(*)[3])job->kernels->interior + (size_t)interior * width * width;
     uint32_t corner = body->texel_index[texel] - half * body->atlas_size - half;
+    parian_half_to_float_array(stored[0], tap, (size_t)row * width);
     for (uint32_t dv = 0; dv < width; dv++) {
-        for (uint32_t du = 0; du < width; du++, tap++) {
-            uint32_t source = body->texel_at[corner + dv * body->atlas_size + du];
-            if (source < body->texel_count) {
-                add_tap(*tap, job->irradiance[source], sum);
-            }
-        }
+        uint32_t source = body->texel_at[corner + dv * body->atlas_size];
+        add_products(tap + dv * row, job->irradiance[source], row, lane);
     }
+    add_lanes(lane, row, sum);
 }
 
 static void filter_list(const filter_job *job, uint32_t border, float sum[3])
 {
     const parian_body *body = job->body;
-    for (uint32_t k = body->border_offset[border]; k < body->border_offset[border + 1]; k++) {
-        add_tap(job->kernels->border[k], job->irradiance[body->border_neighbour[k]], sum);
+    uint32_t last = body->border_offset[border + 1];
+    float tap[LIST_PIECE][3];
+    for (uint32_t k = body->border_offset[border]; k < last; k += LIST_PIECE) {
+        uint32_t count = last - k < LIST_PIECE ? last - k : LIST_PIECE;
+        parian_half_to_float_array(job->kernels->border[k], tap[0], 3 * (size_t)count);
+        for (uint32_t i = 0; i < count; i++) {
+            const float *e = job->irradiance[body->border_neighbour[k + i]];
+            for (int c = 0; c < 3; c++) {
+                sum[c] += tap[i][c] * e[c];
+            }
+        }
     }
 }
 
