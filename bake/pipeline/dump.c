@@ -14,7 +14,7 @@
 #include "tool/files.h"
 #include "tool/picture.h"
 
-enum { NAME_MAX_LENGTH = 96, PATH_MAX_LENGTH = 4096 };
+enum { NAME_MAX_LENGTH = 96, FILE_NAME_MAX_LENGTH = 128, PATH_MAX_LENGTH = 4096 };
 
 typedef struct dump_array {
     const char *name;
@@ -27,7 +27,7 @@ typedef struct dump_array {
 static parian_result write_array(const parian_env *env, const char *folder, uint32_t body,
                                  const dump_array *array)
 {
-    char name[NAME_MAX_LENGTH];
+    char name[FILE_NAME_MAX_LENGTH];
     if (!array->data) {
         return PARIAN_OK;
     }
