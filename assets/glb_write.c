@@ -154,8 +154,8 @@ static void put_medium(text *t, const model_medium *medium)
         "\"attenuationDistance\":%.9g,",
         medium->eta, gltf.attenuation_distance_m);
     put_color(t, "attenuationColor", gltf.attenuation_color);
-    put(t, "},\"KHR_materials_volume_scatter\":{");
-    put_color(t, "multiscatterColor", gltf.multiscatter_color);
+    put(t, "},\"KHR_materials_scatter\":{");
+    put_color(t, "multiscatterColorFactor", gltf.multiscatter_color);
     put(t, ",\"scatterAnisotropy\":%.9g}}", medium->g);
 }
 
@@ -239,7 +239,7 @@ static void put_scene(text *t, const glb_scene *scene)
         "{\"asset\":{\"version\":\"2.0\",\"generator\":\"parian-models\"},\"extensionsUsed\":[%s%s%"
         "s]",
         scatters ? "\"KHR_materials_transmission\",\"KHR_materials_ior\",\"KHR_materials_volume\","
-                   "\"KHR_materials_volume_scatter\""
+                   "\"KHR_materials_scatter\""
                  : "",
         scatters && scene->light_count ? "," : "",
         scene->light_count ? "\"KHR_lights_punctual\"" : "");

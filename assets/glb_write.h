@@ -19,7 +19,7 @@ typedef struct model_medium {
     double eta;                     /* index of refraction */
 } model_medium;
 
-/* The same medium in the terms of KHR_materials_volume and KHR_materials_volume_scatter. */
+/* The same medium in the terms of KHR_materials_volume and KHR_materials_scatter. */
 typedef struct gltf_medium {
     double attenuation_color[3];
     double attenuation_distance_m;
@@ -51,7 +51,7 @@ typedef struct glb_scene {
 
 void glb_scene_free(const parian_env *env, glb_scene *scene);
 
-/* Invert the glTF extensions' formulas. Source: KHR_materials_volume, KHR_materials_volume_scatter.
+/* Invert the glTF extensions' formulas. Source: KHR_materials_volume, KHR_materials_scatter.
  */
 gltf_medium gltf_medium_from(const model_medium *medium);
 

@@ -3,7 +3,7 @@
  * The extensions give, for each channel,
  *     sigma_t = -ln(attenuationColor) / attenuationDistance,
  *     s       = 4.09712 + 4.20863 r - sqrt(9.59217 + 41.6808 r + 17.7126 r^2)   (r =
- * multiscatterColor), albedo  = sigma_s / sigma_t = (1 - s^2) / (1 - g s^2). Wanted are the colours
+ * multiscatterColorFactor), albedo  = sigma_s / sigma_t = (1 - s^2) / (1 - g s^2). Wanted are the colours
  * for given sigma_s' and sigma_a. With sigma_s = sigma_s' / (1 - g) the last line gives s^2 = (1 -
  * albedo) / (1 - g albedo), and the second falls from s = 1 at r = 0 to s = 0 at r = 1, so that
  * bisection finds r. The distance is the mean free path averaged over the channels: it makes the

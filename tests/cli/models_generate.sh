@@ -29,7 +29,7 @@ numbers() {
 # medium FILE: the extensions' formulas forward: sigma_s' and sigma_a in 1/mm of the scattering material.
 medium() {
     awk -v color="$(numbers attenuationColor "$1")" -v distance="$(numbers attenuationDistance "$1")" \
-        -v multi="$(numbers multiscatterColor "$1")" -v g="$(numbers scatterAnisotropy "$1")" 'BEGIN {
+        -v multi="$(numbers multiscatterColorFactor "$1")" -v g="$(numbers scatterAnisotropy "$1")" 'BEGIN {
         split(color, c, ","); split(multi, m, ",")
         for (i = 1; i <= 3; i++) {
             sigma_t = -log(c[i]) / distance
