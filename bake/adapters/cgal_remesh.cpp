@@ -30,11 +30,15 @@ using halfedge = surface::Halfedge_index;
 using edge_flags = surface::Property_map<edge, bool>;
 using vertex_flags = surface::Property_map<vertex, bool>;
 
+enum kind : char { KIND_UNKNOWN, KIND_SHARP, KIND_ROUNDED };
+using edge_kinds = surface::Property_map<edge, char>;
+
 } // namespace
 
 struct parian_remesher {
     surface mesh;
     edge_flags feature;
+    edge_kinds kind;     /* of the features; unknown for those that a round has made */
     vertex_flags corner; /* where features meet, end or turn */
 };
 
@@ -99,14 +103,14 @@ kernel::Vector_3 side_normal(const surface &mesh, const edge_flags &crease,
 
 /* Keep the creases between two sides that each have an area, and whose average normals differ by
  * the crease angle too: what slivers and noise raise are none. */
-void drop_noise_creases(const surface &mesh, const parian_remesher_desc *desc, edge_flags &feature)
+void drop_noise_creases(const surface &mesh, double angle_deg, double area, const edge_kinds &kind,
+                        edge_flags &feature)
 {
-    double cosine = std::cos(desc->crease_deg * CGAL_PI / 180.0);
-    double area = desc->feature_area;
+    double cosine = std::cos(angle_deg * CGAL_PI / 180.0);
     std::vector<edge> noise;
     std::vector<surface::Face_index> reached;
     for (edge e : mesh.edges()) {
-        if (!feature[e] || mesh.is_border(e)) {
+        if (!feature[e] || kind[e] != KIND_UNKNOWN) {
             continue;
         }
         auto h = mesh.halfedge(e);
@@ -144,7 +148,8 @@ double gather_chain(const surface &mesh, const edge_flags &feature, edge start,
     return length;
 }
 
-void drop_short_creases(const surface &mesh, double length_min, edge_flags &feature)
+void drop_short_creases(const surface &mesh, double length_min, const edge_kinds &kind,
+                        edge_flags &feature)
 {
     std::vector<bool> seen(mesh.number_of_edges(), false);
     std::vector<edge> chain;
@@ -154,9 +159,51 @@ void drop_short_creases(const surface &mesh, double length_min, edge_flags &feat
         }
         if (gather_chain(mesh, feature, e, seen, chain) < length_min) {
             for (edge noise : chain) {
-                feature[noise] = mesh.is_border(noise);
+                feature[noise] = kind[noise] != KIND_UNKNOWN;
             }
         }
+    }
+}
+
+/* Add what is between two sides to the features. */
+void add_side_changes(const surface &mesh, const double (*side)[3], edge_flags &feature)
+{
+    for (edge e : mesh.edges()) {
+        if (!mesh.is_border(e) && !feature[e]) {
+            const double *a = side[mesh.face(mesh.halfedge(e, 0))];
+            const double *b = side[mesh.face(mesh.halfedge(e, 1))];
+            feature[e] = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < 0.0;
+        }
+    }
+}
+
+void name_features(const surface &mesh, const edge_flags &feature, char name, edge_kinds &kind)
+{
+    for (edge e : mesh.edges()) {
+        if (feature[e] && kind[e] == KIND_UNKNOWN) {
+            kind[e] = name;
+        }
+    }
+}
+
+/* Sharp creases first: a rounded ridge next to one is none. */
+void find_features(parian_remesher *remesher, const parian_remesher_desc *desc)
+{
+    surface &mesh = remesher->mesh;
+    pmp::detect_sharp_edges(mesh, desc->crease_deg, remesher->feature);
+    for (edge e : mesh.edges()) {
+        remesher->kind[e] = mesh.is_border(e) ? KIND_SHARP : KIND_UNKNOWN;
+    }
+    drop_noise_creases(mesh, desc->crease_deg, desc->feature_area, remesher->kind,
+                       remesher->feature);
+    drop_short_creases(mesh, desc->feature_length, remesher->kind, remesher->feature);
+    name_features(mesh, remesher->feature, KIND_SHARP, remesher->kind);
+    if (desc->side) {
+        add_side_changes(mesh, desc->side, remesher->feature);
+        drop_noise_creases(mesh, desc->ridge_deg, desc->ridge_area, remesher->kind,
+                           remesher->feature);
+        drop_short_creases(mesh, desc->feature_length, remesher->kind, remesher->feature);
+        name_features(mesh, remesher->feature, KIND_ROUNDED, remesher->kind);
     }
 }
 
@@ -201,14 +248,21 @@ bool is_turn(const kernel::Point_3 &a, const kernel::Point_3 &b, const kernel::P
     return ab * bc < turn_cosine * std::sqrt(ab.squared_length() * bc.squared_length());
 }
 
-/* Features meet or end at a corner, or turn there both from edge to edge and seen from some way
- * off: the border of a scan is jagged, but does not turn. */
+/* Features meet or end at a corner, or sharp ones turn there both from edge to edge and seen from
+ * some way off: the border of a scan is jagged, but does not turn. */
 bool is_corner(const parian_remesher *remesher, vertex v, double length)
 {
     const surface &mesh = remesher->mesh;
     halfedge away[2];
     if (!find_two_features(remesher, v, away)) {
         return true;
+    }
+    char kind = remesher->kind[mesh.edge(away[0])];
+    if (kind != remesher->kind[mesh.edge(away[1])]) {
+        return true;
+    }
+    if (kind == KIND_ROUNDED) {
+        return false;
     }
     return is_turn(mesh.point(mesh.target(away[0])), mesh.point(v),
                    mesh.point(mesh.target(away[1]))) &&
@@ -225,6 +279,50 @@ bool touches_feature(const parian_remesher *remesher, vertex v)
         }
     }
     return false;
+}
+
+/* Hand the kinds of features on to those that a round has made; between corners it is the same. */
+void spread_kinds(parian_remesher *remesher)
+{
+    const surface &mesh = remesher->mesh;
+    std::vector<edge> known;
+    for (edge e : mesh.edges()) {
+        if (!remesher->feature[e]) {
+            remesher->kind[e] = KIND_UNKNOWN;
+        } else if (remesher->kind[e] != KIND_UNKNOWN) {
+            known.push_back(e);
+        }
+    }
+    for (size_t i = 0; i < known.size(); i++) {
+        for (int end = 0; end < 2; end++) {
+            vertex v = mesh.vertex(known[i], end);
+            halfedge away[2];
+            if (remesher->corner[v] || !find_two_features(remesher, v, away)) {
+                continue;
+            }
+            for (halfedge h : away) {
+                if (remesher->feature[mesh.edge(h)] &&
+                    remesher->kind[mesh.edge(h)] == KIND_UNKNOWN) {
+                    remesher->kind[mesh.edge(h)] = remesher->kind[known[i]];
+                    known.push_back(mesh.edge(h));
+                }
+            }
+        }
+    }
+}
+
+/* The neighbours along a rounded ridge. */
+void find_along(const parian_remesher *remesher, vertex v, uint32_t along[2])
+{
+    const surface &mesh = remesher->mesh;
+    halfedge away[2];
+    bool rounded = !remesher->corner[v] && find_two_features(remesher, v, away);
+    for (int i = 0; i < 2 && rounded; i++) {
+        rounded = remesher->kind[mesh.edge(away[i])] == KIND_ROUNDED;
+    }
+    for (int i = 0; i < 2; i++) {
+        along[i] = rounded ? uint32_t(mesh.target(away[i])) : uint32_t(PARIAN_NO_NEIGHBOUR);
+    }
 }
 
 void copy_out(const parian_remesher *remesher, parian_mesh *to)
@@ -252,9 +350,8 @@ parian_result parian_remesher_create(const parian_env *env, const parian_mesh *m
         auto made = std::make_unique<parian_remesher>();
         copy_in(mesh, made->mesh);
         made->feature = made->mesh.add_property_map<edge, bool>("e:feature", false).first;
-        pmp::detect_sharp_edges(made->mesh, desc->crease_deg, made->feature);
-        drop_noise_creases(made->mesh, desc, made->feature);
-        drop_short_creases(made->mesh, desc->feature_length, made->feature);
+        made->kind = made->mesh.add_property_map<edge, char>("e:kind", KIND_UNKNOWN).first;
+        find_features(made.get(), desc);
         made->corner = made->mesh.add_property_map<vertex, bool>("v:corner", false).first;
         for (vertex v : made->mesh.vertices()) {
             made->corner[v] =
@@ -282,6 +379,7 @@ parian_result parian_remesher_run(const parian_env *env, parian_remesher *remesh
                                      .number_of_relaxation_steps(0)
                                      .do_project(false));
         mesh.collect_garbage();
+        spread_kinds(remesher);
         return PARIAN_OK;
     });
 }
@@ -295,6 +393,7 @@ parian_result parian_remesher_repair(const parian_env *env, parian_remesher *rem
             pmp::parameters::edge_is_constrained_map(remesher->feature)
                 .vertex_is_constrained_map(remesher->corner));
         remesher->mesh.collect_garbage();
+        spread_kinds(remesher);
         return PARIAN_OK;
     });
 }
@@ -305,31 +404,38 @@ uint32_t parian_remesher_vertex_count(const parian_remesher *remesher)
 }
 
 parian_result parian_remesher_copy(const parian_env *env, const parian_remesher *remesher,
-                                   parian_mesh *mesh, bool **on_feature)
+                                   parian_mesh *mesh, parian_remesher_features *features)
 {
     parian_mesh made = {};
-    bool *flags = nullptr;
+    parian_remesher_features found = {};
     parian_result result = parian::guard(env, "CGAL remeshing", PARIAN_E_COMPUTE, [&] {
         made.vertex_count = remesher->mesh.number_of_vertices();
         made.triangle_count = remesher->mesh.number_of_faces();
         made.position = parian::new_array<double[3]>(env, made.vertex_count);
         made.triangle = parian::new_array<uint32_t[3]>(env, made.triangle_count);
         copy_out(remesher, &made);
-        if (on_feature) {
-            flags = parian::new_array<bool>(env, made.vertex_count);
-            for (vertex v : remesher->mesh.vertices()) {
-                flags[v] = touches_feature(remesher, v);
-            }
-            *on_feature = flags;
+        found.on = parian::new_array<bool>(env, made.vertex_count);
+        found.along = parian::new_array<uint32_t[2]>(env, made.vertex_count);
+        for (vertex v : remesher->mesh.vertices()) {
+            found.on[v] = touches_feature(remesher, v);
+            find_along(remesher, v, found.along[v]);
         }
+        *features = found;
         *mesh = made;
         return PARIAN_OK;
     });
     if (result != PARIAN_OK) {
         parian_mesh_free(env, &made);
-        parian_free(env, flags);
+        parian_remesher_features_free(env, &found);
     }
     return result;
+}
+
+void parian_remesher_features_free(const parian_env *env, parian_remesher_features *features)
+{
+    parian_free(env, features->on);
+    parian_free(env, features->along);
+    *features = {};
 }
 
 void parian_remesher_move(parian_remesher *remesher, const double (*position)[3])

@@ -14,6 +14,9 @@ static const double shrink_min = 0.1;
 /* Source triangles within 78 degrees of a normal are candidates: the far side of a sheet is not. */
 static const double agree_cosine_min = 0.2;
 
+/* Ridges are pulled onto the source as seen from so many reaches outside. */
+static const double ridge_lift = 0.5;
+
 enum { UNDO_ROUNDS = 8, FIT_SAMPLES = 3 };
 
 static void normalise(double v[3])
@@ -107,12 +110,64 @@ static void relax(const parian_mesh *mesh, const bool *fixed, const double (*nor
     }
 }
 
+/* Angle-weighted normals of the vertices on rounded ridges: halfway between both sides, however
+ * many triangles each has. */
+static void make_ridge_normals(const parian_mesh *mesh, const uint32_t (*along)[2],
+                               double (*normal)[3])
+{
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        for (int k = 0; k < 3 && along[v][0] != PARIAN_NO_NEIGHBOUR; k++) {
+            normal[v][k] = 0.0;
+        }
+    }
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        for (int corner = 0; corner < 3; corner++) {
+            const uint32_t *c = mesh->triangle[t], v = c[corner];
+            double a[3], b[3], n[3];
+            if (along[v][0] == PARIAN_NO_NEIGHBOUR) {
+                continue;
+            }
+            subtract(mesh->position[c[(corner + 1) % 3]], mesh->position[v], a);
+            subtract(mesh->position[c[(corner + 2) % 3]], mesh->position[v], b);
+            parian_cross3(a, b, n);
+            double angle = atan2(norm(n), parian_dot3(a, b));
+            normalise(n);
+            for (int k = 0; k < 3; k++) {
+                normal[v][k] += angle * n[k];
+            }
+        }
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        if (along[v][0] != PARIAN_NO_NEIGHBOUR) {
+            normalise(normal[v]);
+        }
+    }
+}
+
+/* Halfway to the middle of the neighbours along the ridge (all the way would let them swing), and
+ * out of the surface. */
+static void relax_ridges(const parian_mesh *mesh, const uint32_t (*along)[2],
+                         const double (*normal)[3], double lift, double (*wanted)[3])
+{
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        if (along[v][0] == PARIAN_NO_NEIGHBOUR) {
+            continue;
+        }
+        for (int k = 0; k < 3; k++) {
+            wanted[v][k] = 0.5 * mesh->position[v][k] + 0.25 * mesh->position[along[v][0]][k] +
+                           0.25 * mesh->position[along[v][1]][k] + lift * normal[v][k];
+        }
+    }
+}
+
 parian_result parian_transfer_relax(const parian_env *env, const parian_closest *source,
-                                    const bool *fixed, double reach, parian_mesh *mesh)
+                                    const parian_remesher_features *features, double reach,
+                                    parian_mesh *mesh)
 {
     parian_result result = PARIAN_E_NOMEM;
     uint32_t vertex_count = mesh->vertex_count, *count = NULL;
     double(*normal)[3] = NULL, (*wanted)[3] = NULL, (*sum)[3] = NULL;
+    const uint32_t(*along)[2] = (const uint32_t(*)[2])features->along;
     parian_closest_hit *hit = NULL;
     if (!PARIAN_NEW(env, normal, vertex_count) || !PARIAN_NEW(env, wanted, vertex_count) ||
         !PARIAN_NEW0(env, sum, vertex_count) || !PARIAN_NEW0(env, count, vertex_count) ||
@@ -121,7 +176,9 @@ parian_result parian_transfer_relax(const parian_env *env, const parian_closest 
         goto done;
     }
     make_vertex_normals(mesh, normal);
-    relax(mesh, fixed, (const double(*)[3])normal, sum, count, wanted);
+    make_ridge_normals(mesh, along, normal);
+    relax(mesh, features->on, (const double(*)[3])normal, sum, count, wanted);
+    relax_ridges(mesh, along, (const double(*)[3])normal, ridge_lift * reach, wanted);
     parian_closest_query query = {vertex_count, (const double(*)[3])wanted,
                                   (const double(*)[3])normal, agree_cosine_min, reach};
     result = parian_closest_find(env, source, &query, hit);
@@ -129,7 +186,8 @@ parian_result parian_transfer_relax(const parian_env *env, const parian_closest 
         goto done;
     }
     for (uint32_t v = 0; v < vertex_count; v++) {
-        bool stay = fixed[v] || hit[v].distance > reach;
+        bool stay = features->on[v] && along[v][0] == PARIAN_NO_NEIGHBOUR;
+        stay = stay || hit[v].distance > reach;
         memcpy(wanted[v], stay ? mesh->position[v] : hit[v].point, sizeof wanted[0]);
     }
     take_positions(mesh, wanted);

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 
 #include "bake/adapters/cgal_closest.h"
+#include "bake/adapters/cgal_remesh.h"
 #include "core/mesh.h"
 #include "core/small_maths.h"
 
@@ -42,17 +43,25 @@ parian_result parian_transfer_decimate(const parian_env *env, const parian_mesh 
 parian_result parian_transfer_remesh(const parian_env *env, const parian_closest *source,
                                      transfer_part *part);
 
+/* transfer_mesh_ridge.c: unit vectors, [triangle_count], of neighbouring triangles on the two sides
+ * of a convex ridge, however rounded, pointing away from each other; zero where the surface is flat
+ * over the length of an edge of the transfer mesh. */
+parian_result parian_transfer_sides(const parian_env *env, const parian_mesh *mesh, double edge,
+                                    double (*side)[3]);
+
 /* transfer_mesh_untangle.c: move vertices around triangles that are next to nothing towards the
  * middle of their neighbours, where that helps; the fixed ones ([vertex_count]) only around the
  * worst. */
 parian_result parian_transfer_untangle(const parian_env *env, const bool *fixed, parian_mesh *mesh);
 
-/* transfer_mesh_fit.c: move the vertices of mesh that are not fixed ([vertex_count]) to the middle
- * of their neighbours and from there onto the source surface (relax), or along their normals to
- * where the mesh as a whole lies closest to it (fit). A move of more than reach, or one that would
- * turn a triangle over, is not made. */
+/* transfer_mesh_fit.c: move the vertices of mesh to the middle of their neighbours and from there
+ * onto the source surface (relax), or along their normals to where the mesh as a whole lies closest
+ * to it (fit). A move of more than reach, or one that would turn a triangle over, is not made.
+ * Vertices on features stay; with relax, those on rounded ridges move along these, and onto the
+ * source as far out as it goes. */
 parian_result parian_transfer_relax(const parian_env *env, const parian_closest *source,
-                                    const bool *fixed, double reach, parian_mesh *mesh);
+                                    const parian_remesher_features *features, double reach,
+                                    parian_mesh *mesh);
 parian_result parian_transfer_fit(const parian_env *env, const parian_closest *source,
                                   const bool *fixed, double reach, parian_mesh *mesh);
 

@@ -2,7 +2,6 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#include "bake/adapters/cgal_remesh.h"
 #include "bake/stages/transfer_mesh_parts.h"
 #include "core/memory.h"
 
@@ -12,6 +11,9 @@ static const double count_tolerance = 0.015;
  */
 static const double dense_from = 16.0, dense_to = 6.0;
 static const double crease_deg = 60.0;
+/* A rounded ridge turns by so much between the averages over so many edges squared on each side: it
+ * has a radius below about 1.4 edges. */
+static const double ridge_deg = 40.0, ridge_area = 2.0;
 /* A crease shorter than this many edges of the transfer mesh is noise to it. */
 static const double feature_edges = 6.0;
 /* Remeshing leaves edges between 4/5 and 4/3 of the length asked for, and more of the short ones:
@@ -33,15 +35,15 @@ static parian_result relax_round(const parian_env *env, const parian_closest *so
                                  parian_remesher *remesher, double reach)
 {
     parian_mesh mesh = {0};
-    bool *on_feature = NULL;
-    parian_result result = parian_remesher_copy(env, remesher, &mesh, &on_feature);
+    parian_remesher_features features = {0};
+    parian_result result = parian_remesher_copy(env, remesher, &mesh, &features);
     if (result == PARIAN_OK) {
-        result = parian_transfer_relax(env, source, on_feature, reach, &mesh);
+        result = parian_transfer_relax(env, source, &features, reach, &mesh);
     }
     if (result == PARIAN_OK) {
         parian_remesher_move(remesher, (const double(*)[3])mesh.position);
     }
-    parian_free(env, on_feature);
+    parian_remesher_features_free(env, &features);
     parian_mesh_free(env, &mesh);
     return result;
 }
@@ -85,24 +87,24 @@ static parian_result finish(const parian_env *env, const parian_closest *source,
                             parian_remesher *remesher, transfer_part *part)
 {
     double reach = edge_for_target(part);
-    bool *on_feature = NULL;
+    parian_remesher_features features = {0};
     parian_result result = parian_remesher_repair(env, remesher);
     if (result == PARIAN_OK) {
-        result = parian_remesher_copy(env, remesher, &part->result, &on_feature);
+        result = parian_remesher_copy(env, remesher, &part->result, &features);
     }
     if (result == PARIAN_OK) {
-        result = parian_transfer_untangle(env, on_feature, &part->result);
+        result = parian_transfer_untangle(env, features.on, &part->result);
     }
     if (result == PARIAN_OK) {
-        result = parian_transfer_relax(env, source, on_feature, reach, &part->result);
+        result = parian_transfer_relax(env, source, &features, reach, &part->result);
     }
     if (result == PARIAN_OK) {
-        result = parian_transfer_fit(env, source, on_feature, reach, &part->result);
+        result = parian_transfer_fit(env, source, features.on, reach, &part->result);
     }
     if (result == PARIAN_OK) {
-        result = parian_transfer_untangle(env, on_feature, &part->result);
+        result = parian_transfer_untangle(env, features.on, &part->result);
     }
-    parian_free(env, on_feature);
+    parian_remesher_features_free(env, &features);
     return result;
 }
 
@@ -111,17 +113,34 @@ static parian_result begin(const parian_env *env, const transfer_part *part,
                            parian_remesher **remesher)
 {
     double edge = edge_for_target(part);
-    parian_remesher_desc desc = {crease_deg, 0.5 * edge * edge, feature_edges * edge, edge};
+    parian_remesher_desc desc = {.crease_deg = crease_deg,
+                                 .feature_area = 0.5 * edge * edge,
+                                 .feature_length = feature_edges * edge,
+                                 .corner_length = edge,
+                                 .ridge_deg = ridge_deg,
+                                 .ridge_area = ridge_area * edge * edge};
     parian_mesh thin = {0};
+    const parian_mesh *from = &part->source;
+    double(*side)[3] = NULL;
     parian_result result = PARIAN_OK;
     if (part->source.vertex_count > dense_from * part->target) {
         uint32_t left = (uint32_t)(dense_to * part->target);
         result = parian_transfer_decimate(env, &part->source, left, &thin);
     }
-    if (result == PARIAN_OK) {
-        result = parian_remesher_create(env, thin.triangle_count ? &thin : &part->source, &desc,
-                                        remesher);
+    if (thin.triangle_count) {
+        from = &thin;
     }
+    if (result == PARIAN_OK && !PARIAN_NEW(env, side, from->triangle_count)) {
+        result = parian_fail(env, PARIAN_E_NOMEM, "transfer mesh: out of memory for ridges");
+    }
+    if (result == PARIAN_OK) {
+        result = parian_transfer_sides(env, from, edge, side);
+    }
+    if (result == PARIAN_OK) {
+        desc.side = (const double(*)[3])side;
+        result = parian_remesher_create(env, from, &desc, remesher);
+    }
+    parian_free(env, side);
     parian_mesh_free(env, &thin);
     return result;
 }

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bake/adapters/cgal_closest.h"
 #include "bake/stages/transfer_mesh.h"
 #include "core/memory.h"
 #include "core/small_maths.h"
@@ -302,6 +303,65 @@ static void test_thin_sheet_keeps_its_thickness(void **state)
     parian_mesh_free(env, &source);
 }
 
+/* A ring-shaped plate of radii 20 and 50 mm whose rims are half rounds of 0.8 mm. */
+static parian_mesh make_plate(double half_thickness)
+{
+    const double inner = 0.02 + half_thickness, outer = 0.05 - half_thickness;
+    const double straight = outer - inner, arc = PARIAN_PI * half_thickness;
+    const uint32_t m = 240, n = 120;
+    parian_mesh mesh = make_torus(0.035, 0.01, m, n);
+    for (uint32_t v = 0; v < mesh.vertex_count; v++) {
+        double a = 2.0 * PARIAN_PI * (v / n) / m;
+        double s = 2.0 * (straight + arc) * (v % n) / n; /* from the middle of the outer rim */
+        bool under = s > straight + arc;
+        s = under ? 2.0 * (straight + arc) - s : s;
+        double turned = fmin(s, 0.5 * arc) + fmax(s - 0.5 * arc - straight, 0.0);
+        double along = fmin(fmax(s - 0.5 * arc, 0.0), straight);
+        double radius = outer - along + half_thickness * cos(turned / half_thickness);
+        double z = half_thickness * sin(turned / half_thickness);
+        mesh.position[v][0] = radius * cos(a);
+        mesh.position[v][1] = radius * sin(a);
+        mesh.position[v][2] = under ? -z : z;
+    }
+    return mesh;
+}
+
+/* Thinner than an edge: triangles across a rim would cut off an edge of it and more (1.3 found).
+ * With edges along the rim, its tip is off by the sag of a chord, h^2 / (8 r) or 1/60 of an edge,
+ * and the wedge that stands for the round by less than the radius of that. */
+static void test_rims_are_smooth(void **state)
+{
+    (void)state;
+    const double half_thickness = 0.0008;
+    const parian_env *env = test_env(2);
+    parian_mesh source = make_plate(half_thickness);
+    parian_transfer_mesh_report report;
+    parian_mesh mesh = transfer_of(env, &source, 2000, &report);
+    parian_closest_hit *hit = malloc(source.vertex_count * sizeof *hit);
+    parian_closest *closest;
+    double worst = 0.0, worst_tip = 0.0;
+    assert_int_equal(check_manifold(&mesh).euler, 0);
+    assert_true(half_thickness < 0.4 * report.edge_mean_m);
+    assert_int_equal(parian_closest_create(env, &mesh, &closest), PARIAN_OK);
+    parian_closest_query query = {.count = source.vertex_count,
+                                  .point = (const double(*)[3])source.position};
+    assert_int_equal(parian_closest_find(env, closest, &query, hit), PARIAN_OK);
+    for (uint32_t v = 0; v < source.vertex_count; v++) {
+        worst = fmax(worst, hit[v].distance);
+        if (fabs(source.position[v][2]) < 1e-9) {
+            worst_tip = fmax(worst_tip, hit[v].distance);
+        }
+    }
+    assert_true(worst <= half_thickness);
+    assert_true(worst_tip <= 0.05 * report.edge_mean_m);
+    assert_true(fabs(report.area_ratio - 1.0) < 0.03);
+    assert_true(report.quality_mean > 0.95);
+    parian_closest_destroy(closest);
+    free(hit);
+    parian_mesh_free(env, &mesh);
+    parian_mesh_free(NULL, &source);
+}
+
 static void test_parts_stay_apart(void **state)
 {
     (void)state;
@@ -325,6 +385,7 @@ static void test_same_bytes_for_any_threads(void **state)
     parian_mesh source, first = {0};
     assert_int_equal(test_sphere(NULL, 0.05, 60, &source), PARIAN_OK);
     source = append(source, make_torus(0.03, 0.01, 100, 40), 0.2);
+    source = append(source, make_plate(0.0008), 0.4);
     for (int i = 0; i < 3; i++) {
         parian_transfer_mesh_report report;
         parian_mesh mesh = transfer_of(test_env(threads[i]), &source, 3000, &report);
@@ -432,6 +493,7 @@ int main(void)
         cmocka_unit_test(test_open_plane),
         cmocka_unit_test(test_torus_keeps_its_hole),
         cmocka_unit_test(test_thin_sheet_keeps_its_thickness),
+        cmocka_unit_test(test_rims_are_smooth),
         cmocka_unit_test(test_parts_stay_apart),
         cmocka_unit_test(test_same_bytes_for_any_threads),
         cmocka_unit_test(test_near_vertices_have_near_indices),
