@@ -5,6 +5,7 @@
  *   min over q of  sum over texels o around the window of
  *                  ( R_d(i, o) - G(i, o) - sum over corners k of psi_k(o) q_k )^2
  *   so that        sum over k of c_k q_k = e,   psi_k-weighted: no response below zero at a corner
+ *   and            q_k <= a few R_d(i, i), where hats hardly leave the window (slivers)
  * G is the response of the stored factors, e the energy that is still missing outside the window,
  * c_k the part of corner k's hat outside the window.
  *
@@ -21,6 +22,9 @@
 #include "core/near_factors.h"
 #include "core/operator.h"
 #include "core/texel_response.h"
+
+/* A vertex of the global part radiates at most this many times what R_d has at its peak. */
+static const double CEILING = 2;
 
 enum { TRIANGLES_PER_BLOCK = 128, STEPS = 16, RING_MIN = 8 };
 
@@ -179,6 +183,7 @@ static void begin_system(const blend_job *job, const parian_patch *patch, uint32
         }
     }
     for (int c = 0; c < 3; c++) {
+        system->ceiling[c] = CEILING * parian_dipole_rd(&job->model.dipole[c], 0);
         system->whole[c] = fmax(1e-30, system->beta[0] * job->total[corner[0]][c] +
                                            system->beta[1] * job->total[corner[1]][c] +
                                            system->beta[2] * job->total[corner[2]][c]);

@@ -112,6 +112,9 @@ static void solve_channel(const parian_blend_system *system, const double matrix
         }
     }
     raise_to_floor(system, c, q);
+    for (int k = 0; k < 3; k++) {
+        q[k] = fmin(q[k], system->ceiling[c]);
+    }
 }
 
 static double regularised(const parian_blend_system *system, double share, double matrix[3][3])

@@ -17,6 +17,7 @@ typedef struct parian_blend_system {
     double missing[3];   /* e: energy still to be carried outside the window, per unit of flux */
     double whole[3];     /* all the energy, for relative errors */
     double floor[3][3];  /* [corner][channel] least weight: no negative response at the corner */
+    double ceiling[3];   /* largest weight: hats that hardly leave the window would need any */
     float beta[3];       /* the texel's barycentrics */
 } parian_blend_system;
 

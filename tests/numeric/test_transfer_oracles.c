@@ -284,7 +284,8 @@ static void black_medium(void **state)
 static void constant_kernel_is_fitted(void **state)
 {
     (void)state;
-    parian_blend_system system = {.beta = {0.2f, 0.3f, 0.5f}, .whole = {1, 1, 1}};
+    parian_blend_system system = {
+        .beta = {0.2f, 0.3f, 0.5f}, .whole = {1, 1, 1}, .ceiling = {10, 10, 10}};
     for (int i = 0; i < 40; i++) {
         float a = (float)((i * 7) % 11) / 11, b = (1 - a) * (float)((i * 5) % 13) / 13;
         float psi[3] = {a, b, 1 - a - b}, direct[3] = {3, 4, 5}, carried[3] = {1, 1, 1};
@@ -304,6 +305,27 @@ static void constant_kernel_is_fitted(void **state)
         for (int k = 0; k < 9; k++) {
             assert_true(fabs(q[k / 3][k % 3] - (2 + k % 3)) <
                         1e-2); /* drawn to the fallback: 1e-4 */
+        }
+    }
+}
+
+/* A texel of a sliver: its corners' hats leave the window by rounding alone, which no weight can
+ * make carry the missing energy. */
+static void weights_of_slivers_are_bounded(void **state)
+{
+    (void)state;
+    parian_blend_system system = {.beta = {0.2f, 0.3f, 0.5f},
+                                  .whole = {1, 1, 1},
+                                  .missing = {0.6, 0.5, 0.4},
+                                  .reach = {1e-15, 2e-15, 1e-15},
+                                  .ceiling = {3e5, 4e5, 5e5}};
+    const float psi[3] = {0.3f, 0.3f, 0.4f}, direct[3] = {2e5f, 2e5f, 2e5f}, carried[3] = {0, 0, 0};
+    double q[3][3];
+    parian_blend_add(&system, psi, direct, carried);
+    for (int fit = 0; fit < 2; fit++) {
+        parian_blend_solve(&system, fit, q);
+        for (int k = 0; k < 9; k++) {
+            assert_true(q[k / 3][k % 3] >= 0 && q[k / 3][k % 3] <= system.ceiling[k % 3]);
         }
     }
 }
@@ -426,6 +448,7 @@ int main(void)
         cmocka_unit_test(scaling_is_exact),
         cmocka_unit_test(black_medium),
         cmocka_unit_test(constant_kernel_is_fitted),
+        cmocka_unit_test(weights_of_slivers_are_bounded),
         cmocka_unit_test(impulse_is_exact_inside_and_conserved),
         cmocka_unit_test(shadow_edge_on_a_plane),
     };
