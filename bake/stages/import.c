@@ -6,6 +6,7 @@
 
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 #include "bake/adapters/gltf_import.h"
 #include "bake/adapters/openmesh_import.h"
@@ -99,7 +100,8 @@ static parian_result import_mesh(const parian_env *env, const char *path,
     return result;
 }
 
-static parian_result import_gltf(const parian_env *env, const char *path, parian_source_scene *scene)
+static parian_result import_gltf(const parian_env *env, const char *path,
+                                 parian_source_scene *scene)
 {
     uint8_t *data = NULL;
     size_t size = 0;
@@ -111,10 +113,25 @@ static parian_result import_gltf(const parian_env *env, const char *path, parian
     return result;
 }
 
+/* A pipe or device has no size to check counts against, and cannot be read twice. */
+static parian_result check_regular(const parian_env *env, const char *path)
+{
+    struct stat info;
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) {
+        return parian_fail(env, PARIAN_E_IO,
+                           "cannot read '%s': it is a pipe or device, a file was expected", path);
+    }
+    return PARIAN_OK;
+}
+
 parian_result parian_import(const parian_env *env, const char *path, parian_source_scene *scene)
 {
     if (!path || !scene) {
         return parian_fail(env, PARIAN_E_ARGUMENT, "import: no path or no scene given");
+    }
+    parian_result regular = check_regular(env, path);
+    if (regular != PARIAN_OK) {
+        return regular;
     }
     const char *slash = strrchr(path, '/');
     const char *dot = strrchr(slash ? slash : path, '.');

@@ -46,6 +46,12 @@ expect 1 parian-bake "$ply" --scale 50mm -o -
 expect 2 parian-bake "$ply" --scale 50mm -o "$work/a.parian" --report "$ply/report.json"
 expect 2 parian-bake "$ply" --scale 50mm -o "$work/a.parian" --dump "$ply"
 expect 2 parian-bake "$work/absent.ply" --scale 50mm -o "$work/new/folder/a.parian"
+ln -s /dev/zero "$work/zero.stl"
+mkfifo "$work/pipe.ply"
+for file in zero.stl pipe.ply; do
+    expect 2 timeout 20 parian-bake "$work/$file" --scale 50mm -o "$work/a.parian"
+    contains "$err" "a file was expected"
+done
 [ ! -e "$work/new" ] || fail "a failed run left a folder"
 expect 5 parian-bake "$work/model.fbx" --scale 50mm -o "$work/a.parian"
 [ ! -e "$work/a.parian" ] || fail "a failed run left an asset"
