@@ -33,7 +33,9 @@ void blob_add(blob *b, const void *data, size_t size)
         b->data = grown;
         b->capacity = capacity;
     }
-    memcpy(b->data + b->size, data, size);
+    if (size) { /* an empty file has no data at all */
+        memcpy(b->data + b->size, data, size);
+    }
     b->size += size;
 }
 
