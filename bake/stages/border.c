@@ -1,12 +1,12 @@
 /* border.c - lists the neighbours of texels whose window leaves their chart, across charts.
  *
- * A texel is interior when every texel of its window is owned and fully covered by its chart; its
- * window is then its neighbourhood. All others are border texels and carry a list. Two texels are
- * neighbours
+ * A texel is interior when every texel of its window is owned and fully covered by its chart, and
+ * no opposite side of a sheet is nearer than the window reaches; its window is then its
+ * neighbourhood. All others are border texels and carry a list. Two texels are neighbours
  *   - of one chart: when each lies in the other's window;
  *   - of two charts, which then are both border texels: when their Euclidean distance is at most
- * that of a disc with the window's area, and their normals do not oppose each other (so lists reach
- *     around sharp edges but not through thin sheets).
+ *     that of a disc with the window's area. Lists reach around sharp edges, and through walls that
+ *     are too thin for the vertices to resolve.
  * Both rules are symmetric. Lists are counted first and filled afterwards, by slices of border
  * texels.
  *
@@ -22,7 +22,7 @@
 
 enum { SLICE = 512, HASH_LOAD = 2 };
 static const float FULL_COVER = 0.999f;
-static const float NORMAL_COSINE_MIN = -0.2f; /* lists reach around an edge of 100 degrees */
+static const float OPPOSITE_COSINE = -0.2f; /* beyond an edge of 100 degrees */
 
 /* What the rule across charts needs of a border texel, filed in the order of the hash. */
 typedef struct border_point {
@@ -41,9 +41,10 @@ typedef struct border_job {
     border_point *point;    /* [border_count] texels ascending in a bucket */
     uint32_t bucket_mask;
     uint32_t border_count;
-    uint32_t *border_texel;
-    uint32_t *offset;    /* [border_count + 1] */
-    uint32_t *neighbour; /* NULL while counting */
+    uint32_t *border_texel; /* the texels that are hashed and listed; all while looking for walls */
+    uint8_t *thin;          /* [texel_count] an opposite side is near */
+    uint32_t *offset;       /* [border_count + 1] */
+    uint32_t *neighbour;    /* NULL while counting */
 } border_job;
 
 /* Keep what has `half` set cells on both sides, along rows (step 1) or columns (step side). */
@@ -68,8 +69,8 @@ static void erode(uint8_t *map, uint32_t side, size_t step, uint32_t half)
     }
 }
 
-/* Find the border texels; supported becomes the map of the interior ones. */
-static parian_result find_border(const parian_env *env, border_job *job, const float *covered)
+/* The map of the texels whose windows are covered by their charts. */
+static void find_supported(border_job *job, const float *covered)
 {
     const parian_body *body = job->body;
     uint32_t side = body->atlas_size;
@@ -79,20 +80,35 @@ static parian_result find_border(const parian_env *env, border_job *job, const f
     }
     erode(job->supported, side, 1, (uint32_t)job->half);
     erode(job->supported, side, side, (uint32_t)job->half);
-    for (uint32_t i = 0; i < body->texel_count; i++) {
-        job->border_count += !job->supported[body->texel_index[i]];
-    }
-    if (!PARIAN_NEW(env, job->border_texel, job->border_count) ||
-        !PARIAN_NEW(env, job->chart, body->texel_count)) {
+}
+
+/* All texels, to look for walls among them. */
+static parian_result take_all(const parian_env *env, border_job *job)
+{
+    const parian_body *body = job->body;
+    job->border_count = body->texel_count;
+    if (!PARIAN_NEW(env, job->border_texel, body->texel_count) ||
+        !PARIAN_NEW(env, job->chart, body->texel_count) ||
+        !PARIAN_NEW0(env, job->thin, body->texel_count)) {
         return PARIAN_E_NOMEM;
     }
-    for (uint32_t i = 0, next = 0; i < body->texel_count; i++) {
+    for (uint32_t i = 0; i < body->texel_count; i++) {
         job->chart[i] = texel_chart(body, i);
-        if (!job->supported[body->texel_index[i]]) {
-            job->border_texel[next++] = i;
-        }
+        job->border_texel[i] = i;
     }
     return PARIAN_OK;
+}
+
+/* Only the border texels from here on. */
+static void keep_border(border_job *job)
+{
+    const parian_body *body = job->body;
+    job->border_count = 0;
+    for (uint32_t i = 0; i < body->texel_count; i++) {
+        if (!job->supported[body->texel_index[i]] || job->thin[i]) {
+            job->border_texel[job->border_count++] = i;
+        }
+    }
 }
 
 /* The radius of a disc with a window's area, from the mean texel. */
@@ -127,7 +143,7 @@ static uint32_t bucket_of_texel(const border_job *job, uint32_t texel)
                      grid_coordinate(job, (double)p[2]));
 }
 
-/* Hash the border texels by their position, cells as wide as the radius. */
+/* Hash the texels at hand by their position, cells as wide as the radius. */
 static parian_result fill_hash(const parian_env *env, border_job *job)
 {
     uint32_t bucket_count = 64;
@@ -135,6 +151,9 @@ static parian_result fill_hash(const parian_env *env, border_job *job)
         bucket_count *= 2;
     }
     job->bucket_mask = bucket_count - 1;
+    parian_free(env, job->bucket_begin);
+    parian_free(env, job->point);
+    job->point = NULL;
     if (!PARIAN_NEW0(env, job->bucket_begin, (size_t)bucket_count + 2) ||
         !PARIAN_NEW(env, job->point, job->border_count)) {
         return PARIAN_E_NOMEM;
@@ -180,18 +199,21 @@ static uint32_t list_window(const border_job *job, uint32_t texel, uint32_t *out
 
 static bool across_charts(const border_job *job, uint32_t texel, const border_point *other)
 {
-    const parian_body *body = job->body;
-    const float *n = body->texel_normal[texel], *m = other->normal;
-    return parian_distance2f(body->texel_position[texel], other->position) <= job->radius2 &&
-           other->chart != job->chart[texel] &&
-           n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > NORMAL_COSINE_MIN;
+    return parian_distance2f(job->body->texel_position[texel], other->position) <= job->radius2 &&
+           other->chart != job->chart[texel];
 }
 
-/* Neighbours of other charts, through the hash. Cells that share a bucket are looked through once.
- */
-static uint32_t list_across(const border_job *job, uint32_t texel, uint32_t *out)
+static bool opposite(const border_job *job, uint32_t texel, const border_point *other)
 {
-    uint32_t seen[27], seen_count = 0, count = 0;
+    const float *n = job->body->texel_normal[texel], *m = other->normal;
+    return n[0] * m[0] + n[1] * m[1] + n[2] * m[2] <= OPPOSITE_COSINE &&
+           across_charts(job, texel, other);
+}
+
+/* The buckets of the 27 cells around a texel, each once: cells may share one. */
+static uint32_t buckets_around(const border_job *job, uint32_t texel, uint32_t seen[27])
+{
+    uint32_t seen_count = 0;
     int64_t at[3];
     for (int d = 0; d < 3; d++) {
         at[d] = grid_coordinate(job, (double)job->body->texel_position[texel][d]);
@@ -207,7 +229,16 @@ static uint32_t list_across(const border_job *job, uint32_t texel, uint32_t *out
             continue;
         }
         seen[seen_count++] = bucket;
-        for (uint32_t i = job->bucket_begin[bucket]; i < job->bucket_begin[bucket + 1]; i++) {
+    }
+    return seen_count;
+}
+
+/* Neighbours of other charts, through the hash. */
+static uint32_t list_across(const border_job *job, uint32_t texel, uint32_t *out)
+{
+    uint32_t bucket[27], count = 0, buckets = buckets_around(job, texel, bucket);
+    for (uint32_t b = 0; b < buckets; b++) {
+        for (uint32_t i = job->bucket_begin[bucket[b]]; i < job->bucket_begin[bucket[b] + 1]; i++) {
             if (across_charts(job, texel, &job->point[i])) {
                 if (out) {
                     out[count] = job->point[i].texel;
@@ -217,6 +248,29 @@ static uint32_t list_across(const border_job *job, uint32_t texel, uint32_t *out
         }
     }
     return count;
+}
+
+static bool has_opposite(const border_job *job, uint32_t texel)
+{
+    uint32_t bucket[27], buckets = buckets_around(job, texel, bucket);
+    for (uint32_t b = 0; b < buckets; b++) {
+        for (uint32_t i = job->bucket_begin[bucket[b]]; i < job->bucket_begin[bucket[b] + 1]; i++) {
+            if (opposite(job, texel, &job->point[i])) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static void find_thin_slice(void *context, size_t slice)
+{
+    border_job *job = context;
+    uint32_t first = (uint32_t)slice * SLICE;
+    uint32_t end = job->border_count - first < SLICE ? job->border_count : first + SLICE;
+    for (uint32_t i = first; i < end; i++) {
+        job->thin[i] = has_opposite(job, i);
+    }
 }
 
 static int compare_texels(const void *left, const void *right)
@@ -294,9 +348,15 @@ parian_result texels_border(const parian_env *env, parian_body *body, const floa
     job.cell_size = 1.0001 * radius;
     parian_result result = PARIAN_E_NOMEM;
     if (PARIAN_NEW(env, job.supported, (size_t)body->atlas_size * body->atlas_size)) {
-        result = find_border(env, &job, covered);
+        find_supported(&job, covered);
+        result = take_all(env, &job);
     }
     if (result == PARIAN_OK) {
+        result = fill_hash(env, &job);
+    }
+    if (result == PARIAN_OK) {
+        parian_par(env, (job.border_count + SLICE - 1) / SLICE, find_thin_slice, &job);
+        keep_border(&job);
         result = fill_hash(env, &job);
     }
     if (result == PARIAN_OK) {
@@ -317,6 +377,7 @@ parian_result texels_border(const parian_env *env, parian_body *body, const floa
     parian_free(env, job.border_texel);
     parian_free(env, job.point);
     parian_free(env, job.chart);
+    parian_free(env, job.thin);
     parian_free(env, job.bucket_begin);
     parian_free(env, job.supported);
     return result;

@@ -64,10 +64,12 @@ static void place_square(const parian_body *body, uint32_t i, uint32_t o, float 
     double least = 0.85 * (side + sqrt(body->texel_area[o])) / sqrt(PARIAN_PI);
     parian_sub3(body->texel_position[i], x, d);
     double distance = sqrt(parian_dot3(d, d));
+    const float *m = body->texel_normal[o];
+    bool opposed = n[0] * m[0] + n[1] * m[1] + n[2] * m[2] < 0; /* sides of a wall may be near */
     if (!(distance > 1e-6 * least)) {
         d[0] = fabs(n[0]) < 0.6, d[1] = fabs(n[0]) >= 0.6, d[2] = 0;
         d[0] *= least, d[1] *= least;
-    } else if (distance < least) {
+    } else if (distance < least && !opposed) {
         for (int k = 0; k < 3; k++) {
             d[k] *= least / distance;
         }
@@ -111,6 +113,17 @@ static void square_mean(const parian_texel_response *response, uint32_t i, uint3
     }
 }
 
+/* Share of the squared distance that is the height of o above the plane of texel i. */
+static float height_share(const parian_body *body, uint32_t i, uint32_t o, float r2)
+{
+    const float *n = body->texel_normal[i], *x = body->texel_position[i];
+    const float *y = body->texel_position[o];
+    float height = n[0] * (y[0] - x[0]) + n[1] * (y[1] - x[1]) + n[2] * (y[2] - x[2]);
+    return r2 > 0 ? fminf(1, height * height / r2) : 0;
+}
+
+/* The mean of R_d over texel i: R_d + A/24 times its Laplacian over the texel's plane where that is
+ * small, else by points. */
 void parian_texel_response_eval(const parian_texel_response *response, uint32_t i, uint32_t o,
                                 float value[3])
 {
@@ -123,13 +136,16 @@ void parian_texel_response_eval(const parian_texel_response *response, uint32_t 
     } else if (!body->paper_form && area > 0.25f * (r2 + response->z2)) {
         square_mean(response, i, o, value);
     } else {
-        float laplacian[3];
+        float laplacian[3], slope[3];
         parian_transport_model_eval(model, body->texel_position[i], body->texel_normal[i],
                                     body->texel_position[o], body->texel_normal[o], value);
         if (!body->paper_form) {
+            float off = height_share(body, i, o, r2);
             parian_radial_eval(&model->laplacian, r2, laplacian);
+            parian_radial_eval(&model->slope, r2, slope);
             for (int c = 0; c < 3; c++) {
-                value[c] = fmaxf(0, value[c] + area * (1.0f / 24) * laplacian[c]);
+                float widening = laplacian[c] - off * (laplacian[c] - 4 * slope[c]);
+                value[c] = fmaxf(0, value[c] + area * (1.0f / 24) * widening);
             }
         }
     }
