@@ -57,17 +57,18 @@ error_rows() {
 }
 
 section_bake() {
-    printf '### Seconds of a bake\n\n| model | triangles | stage seconds | all s | peak MB | file MB | factors a channel |\n|---|---|---|---|---|---|---|\n'
+    printf '### Seconds of a bake\n\n| model | triangles kept | stage seconds | all s | peak MB | file MB | factors a channel |\n|---|---|---|---|---|---|---|\n'
     for name in figurine bunny_mid_75k horse_97k happy_buddha_100k igea_269k; do
         have $name || continue
         bake $name marble
         local stages=
+        sed -n '/"seconds":/,/}/p' "$work/a.json" > "$work/seconds"
         for s in surface "transfer mesh" atlas texels plan detail global blend local; do
-            stages="$stages$s $(printf '%.2f' "$(field "$s" "$work/a.json" | head -1)"), "
+            stages="$stages$s $(printf '%.2f' "$(field "$s" "$work/seconds")"), "
         done
         stages="import $(printf '%.2f' "$(field import_seconds "$work/a.json")"), ${stages}write $(printf '%.2f' "$(field write_seconds "$work/a.json")")"
         printf '| %s | %s | %s | %.1f | %.0f | %.0f | %.1f M |\n' "$name" \
-            "$(field triangles "$work/a.json") kept" "$stages" "$(field total_seconds "$work/a.json")" \
+            "$(field triangles "$work/a.json")" "$stages" "$(field total_seconds "$work/a.json")" \
             "$(awk "BEGIN{print $(field peak_memory_bytes "$work/a.json")/1e6}")" \
             "$(awk "BEGIN{print $(field file_size "$work/a.json")/1e6}")" \
             "$(awk "BEGIN{print $(field factors_per_channel "$work/a.json")/1e6}")"
