@@ -75,7 +75,7 @@ picture figurine-back-opaque figurine $look $front $back --view opaque
 picture figurine-local figurine $look $front $key --view local
 picture figurine-global figurine $look $front $key --view global
 picture figurine-slide figurine $look --camera orbit:14,12,2.6 $slide
-picture candle candle $look --camera orbit:20,16,2.7
+picture candle candle $look --camera orbit:20,16,3.4
 picture cup cup $look --camera orbit:-30,24,2.7 --light point:-0.05,0.075,-0.11:intensity=0.03 \
     --light directional:0.5,-0.8,-0.7:irradiance=0.8
 picture leaf leaf $look --camera orbit:25,42,2.6 --light directional:0.3,0.8,-0.4:irradiance=2 \
