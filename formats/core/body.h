@@ -9,7 +9,7 @@
  *   B(x_o)  = sum over v of beta_v(x_o) B_v  + sum over i in W(o) of  K'_o(i) E_i
  *
  * F has a zero diagonal where a local part exists (the blending weights w take its place) and the
- * disc-averaged diagonal where none does. K' is the residual kernel (R_d minus what the global part
+ * diagonal that completes its row's sum where none does. K' is the residual kernel (R_d minus what the global part
  * already carries). W(o) is the square window of kernel_width texels for an interior texel, and an
  * explicit list for a border texel (one whose window leaves its chart), across charts. The dual-basis
  * form of the paper differs in the restriction alone: 4 beta - 1 takes the place of beta
