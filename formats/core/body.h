@@ -8,14 +8,14 @@
  *   B_v     = sum over vertices u of F_vu Phi_u  + sum over texels i of w_v(i) E_i
  *   B(x_o)  = sum over v of beta_v(x_o) B_v  + sum over i in W(o) of  K'_o(i) E_i
  *
- * F has a zero diagonal where a local part exists (the blending weights w take its place) and the
- * diagonal that completes its row's sum where none does. K' is the residual kernel (R_d minus what the global part
- * already carries). W(o) is the square window of kernel_width texels for an interior texel, and an
- * explicit list for a border texel (one whose window leaves its chart), across charts. The dual-basis
- * form of the paper differs in the restriction alone: 4 beta - 1 takes the place of beta
- * (restriction_dual).
+ * F has a zero diagonal where a local part exists (the blending weights w take its place) and a
+ * diagonal that completes its row's sum where none does. K' is the residual kernel (R_d minus what
+ * the global part already carries). W(o) is the square window of kernel_width texels for an
+ * interior texel, and an explicit list for a border texel (one whose window leaves its chart, or
+ * that is nearer to an opposite side than a window reaches), across charts. The dual-basis form of
+ * the paper differs in the restriction alone: 4 beta - 1 takes the place of beta (paper_form).
  *
- * Every array is owned by the body unless `mapped` says that it points into the reader's mapping.
+ * Every array is owned by the body.
  *
  * SPDX-License-Identifier: MIT
  */
