@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "bake/stages/surface_steps.h"
+#include "core/disjoint_sets.h"
 #include "core/memory.h"
 
 typedef struct manifold {
@@ -193,22 +194,6 @@ static parian_result pair_edges(manifold *m)
     return result;
 }
 
-static uint32_t find_root(uint32_t *parent, uint32_t corner)
-{
-    while (parent[corner] != corner) {
-        parent[corner] = parent[parent[corner]];
-        corner = parent[corner];
-    }
-    return corner;
-}
-
-static void unite(uint32_t *parent, uint32_t a, uint32_t b)
-{
-    a = find_root(parent, a);
-    b = find_root(parent, b);
-    parent[a > b ? a : b] = a > b ? b : a;
-}
-
 /* Corners that are joined over paired edges are one fan and one vertex; the first fan at a vertex
  * keeps it, each further one gets a copy. */
 static parian_result split_fans(manifold *m)
@@ -223,8 +208,8 @@ static parian_result split_fans(manifold *m)
     for (uint32_t h = 0; h < total; h++) {
         uint32_t g = m->mate[h];
         if (g != SURFACE_NO_MATE && g > h) {
-            unite(parent, h, 3 * (g / 3) + (g % 3 + 1) % 3);
-            unite(parent, 3 * (h / 3) + (h % 3 + 1) % 3, g);
+            parian_set_join(parent, h, 3 * (g / 3) + (g % 3 + 1) % 3);
+            parian_set_join(parent, 3 * (h / 3) + (h % 3 + 1) % 3, g);
         }
     }
     if (!PARIAN_NEW(m->env, target, total)) {
@@ -233,7 +218,7 @@ static parian_result split_fans(manifold *m)
     bool *used = (bool *)m->queue; /* a flag for each vertex fits: see allocate */
     memset(used, 0, mesh->vertex_count);
     for (uint32_t c = 0; c < total; c++) {
-        if (find_root(parent, c) == c) {
+        if (parian_set_root(parent, c) == c) {
             uint32_t vertex = mesh->triangle[c / 3][c % 3];
             target[c] = used[vertex] ? count++ : vertex;
             used[vertex] = true;
@@ -244,7 +229,7 @@ static parian_result split_fans(manifold *m)
         return parian_fail(m->env, PARIAN_E_NOMEM, "surface: out of memory for %u vertices", count);
     }
     for (uint32_t c = 0; c < total; c++) {
-        uint32_t *vertex = &mesh->triangle[c / 3][c % 3], made = target[find_root(parent, c)];
+        uint32_t *vertex = &mesh->triangle[c / 3][c % 3], made = target[parian_set_root(parent, c)];
         memcpy(position[made], mesh->position[*vertex], sizeof *position);
         *vertex = made;
     }

@@ -9,6 +9,7 @@
 
 #include "bake/adapters/openmesh_decimate.h"
 #include "bake/stages/transfer_mesh_parts.h"
+#include "core/disjoint_sets.h"
 #include "core/memory.h"
 
 enum { PIECE_TRIANGLES = 32000 };
@@ -39,22 +40,6 @@ static uint32_t piece_begin(const decimate_job *job, uint32_t index)
     return (uint32_t)((uint64_t)job->source->triangle_count * index / job->piece_count);
 }
 
-static uint32_t find_root(uint32_t *parent, uint32_t i)
-{
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
-static void join(uint32_t *parent, uint32_t a, uint32_t b)
-{
-    a = find_root(parent, a);
-    b = find_root(parent, b);
-    parent[a > b ? a : b] = a < b ? a : b;
-}
-
 /* The half-edge of the piece across another one; PARIAN_NO_NEIGHBOUR at the rim of the piece. */
 static uint32_t across(const decimate_job *job, uint32_t begin, uint32_t end, uint32_t i)
 {
@@ -80,8 +65,8 @@ static void join_corners(const decimate_job *job, uint32_t begin, uint32_t end, 
     for (uint32_t i = 0; i < corner_count; i++) {
         uint32_t other = across(job, begin, end, i);
         if (other != PARIAN_NO_NEIGHBOUR) {
-            join(out->parent, i, next_corner(other));
-            join(out->parent, next_corner(i), other);
+            parian_set_join(out->parent, i, next_corner(other));
+            parian_set_join(out->parent, next_corner(i), other);
         }
     }
 }
@@ -91,7 +76,7 @@ static void number_vertices(const decimate_job *job, uint32_t begin, uint32_t en
     const parian_mesh *source = job->source;
     uint32_t *local = &out->mesh.triangle[0][0];
     for (uint32_t i = 0; i < 3 * (end - begin); i++) {
-        uint32_t root = find_root(out->parent, i);
+        uint32_t root = parian_set_root(out->parent, i);
         if (root != i) {
             local[i] = local[root];
             continue;

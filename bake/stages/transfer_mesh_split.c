@@ -5,16 +5,8 @@
 #include <string.h>
 
 #include "bake/stages/transfer_mesh_parts.h"
+#include "core/disjoint_sets.h"
 #include "core/memory.h"
-
-static uint32_t find_root(uint32_t *parent, uint32_t v)
-{
-    while (parent[v] != v) {
-        parent[v] = parent[parent[v]];
-        v = parent[v];
-    }
-    return v;
-}
 
 static void join_vertices(const parian_mesh *mesh, uint32_t *parent)
 {
@@ -23,9 +15,7 @@ static void join_vertices(const parian_mesh *mesh, uint32_t *parent)
     }
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         for (int k = 1; k < 3; k++) {
-            uint32_t a = find_root(parent, mesh->triangle[t][0]);
-            uint32_t b = find_root(parent, mesh->triangle[t][k]);
-            parent[a > b ? a : b] = a < b ? a : b;
+            parian_set_join(parent, mesh->triangle[t][0], mesh->triangle[t][k]);
         }
     }
 }
@@ -37,7 +27,7 @@ static uint32_t number_components(const parian_mesh *mesh, uint32_t *parent, uin
     uint32_t count = 0;
     memset(component, 0xFF, mesh->vertex_count * sizeof *component);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        uint32_t root = find_root(parent, mesh->triangle[t][0]);
+        uint32_t root = parian_set_root(parent, mesh->triangle[t][0]);
         if (component[root] == 0xFFFFFFFFu) {
             component[root] = count++;
         }

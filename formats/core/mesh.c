@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/disjoint_sets.h"
 #include "core/memory.h"
 
 static const double pi = 3.14159265358979323846;
@@ -186,22 +187,6 @@ static double corner_angle(const parian_mesh *mesh, uint32_t triangle, unsigned 
     return acos(fmin(1.0, fmax(-1.0, cosine)));
 }
 
-static uint32_t find_root(uint32_t *parent, uint32_t corner)
-{
-    while (parent[corner] != corner) {
-        parent[corner] = parent[parent[corner]];
-        corner = parent[corner];
-    }
-    return corner;
-}
-
-static void join(uint32_t *parent, uint32_t a, uint32_t b)
-{
-    a = find_root(parent, a);
-    b = find_root(parent, b);
-    parent[a > b ? a : b] = a < b ? a : b;
-}
-
 /* Join the corners that share a normal: those at both ends of every edge flatter than the crease. A
  * triangle without area has no normal to disagree with. */
 static void join_smooth_corners(const parian_mesh *mesh, const double (*normal)[3],
@@ -220,8 +205,8 @@ static void join_smooth_corners(const parian_mesh *mesh, const double (*normal)[
             double scale = length(a) * length(b);
             double cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
             if (scale == 0.0 || cosine >= cos_crease * scale) {
-                join(parent, 3 * t + k, other - other % 3 + (other + 1) % 3);
-                join(parent, 3 * t + (k + 1) % 3, other);
+                parian_set_join(parent, 3 * t + k, other - other % 3 + (other + 1) % 3);
+                parian_set_join(parent, 3 * t + (k + 1) % 3, other);
             }
         }
     }
@@ -235,7 +220,7 @@ static void sum_corner_normals(const parian_mesh *mesh, const double (*normal)[3
         double size = length(normal[t]);
         for (unsigned k = 0; k < 3 && size > 0.0; k++) {
             double weight = corner_angle(mesh, t, k) / size;
-            double *target = sum[find_root(parent, 3 * t + k)];
+            double *target = sum[parian_set_root(parent, 3 * t + k)];
             for (int d = 0; d < 3; d++) {
                 target[d] += weight * normal[t][d];
             }
@@ -280,7 +265,7 @@ parian_result parian_mesh_make_corner_normals(const parian_env *env, parian_mesh
     sum_corner_normals(mesh, (const double(*)[3])normal, parent, sum);
     for (uint32_t t = 0; t < count; t++) {
         for (unsigned k = 0; k < 3; k++) {
-            store_unit(sum[find_root(parent, 3 * t + k)], normal[t], corner_normal[t][k]);
+            store_unit(sum[parian_set_root(parent, 3 * t + k)], normal[t], corner_normal[t][k]);
         }
     }
     parian_free(env, mesh->corner_normal);
