@@ -17,15 +17,17 @@
 #include "bake/reference/vec3d.h"
 #include "core/memory.h"
 
-/* In units of a mesh's extent: how far before the origin a ray starts, which is above the rounding
- * of float coordinates (6e-8) and of Embree's tests; and the least distance of a hit, above that of
- * doubles. */
-static const double BACK_OFF = 1e-6, DISTANCE_MIN = 1e-12;
+/* In units of a mesh's extent. Rays start this far before their origin, above the rounding of float
+ * coordinates (6e-8) and of Embree's tests; those from a triangle also this far to the side that
+ * they go to, for a grazing ray that starts by an edge must not be found beyond the neighbour; and
+ * no hit is nearer than this, above the rounding of doubles. */
+static const double BACK_OFF = 1e-6, SIDE_STEP = 3e-7, DISTANCE_MIN = 1e-12;
 
 typedef struct ray_mesh {
     RTCScene scene;          /* NULL for a mesh without triangles */
     double centre[3], scale; /* local = (world - centre) * scale */
     double lower[3], upper[3];
+    uint32_t triangle_count;
     double (*position)[3];
     uint32_t (*triangle)[3];
 } ray_mesh;
@@ -58,36 +60,47 @@ typedef struct exact_hit {
     double edge[2][3];
 } exact_hit;
 
-/* Where the ray's line passes the triangle; a candidate that it passes outside by rounding is taken
- * at the nearest place of the rim by barycentrics. Source  [Moeller97] */
-static void meet_triangle(const ray_mesh *mesh, uint32_t triangle, const parian_ray *ray,
-                          exact_hit *out)
+/* Move a place beside the triangle onto its rim; the distance along the ray follows. */
+static void clamp_hit(const double from_corner[3], const parian_ray *ray, exact_hit *hit)
+{
+    double u = fmax(hit->barycentric[1], 0), v = fmax(hit->barycentric[2], 0);
+    double sum = fmax(u + v, 1);
+    hit->barycentric[1] = u / sum;
+    hit->barycentric[2] = v / sum;
+    hit->barycentric[0] = fmax(1 - u / sum - v / sum, 0);
+    hit->distance = hit->barycentric[1] * vec3d_dot(hit->edge[0], ray->direction) +
+                    hit->barycentric[2] * vec3d_dot(hit->edge[1], ray->direction) -
+                    vec3d_dot(from_corner, ray->direction);
+}
+
+/* Whether the ray passes the triangle's plane farther than distance_min from its origin, and where.
+ * A candidate that it passes outside by rounding is taken at a place of the rim. Source [Moeller97]
+ */
+static bool meet_triangle(const ray_mesh *mesh, uint32_t triangle, const parian_ray *ray,
+                          double distance_min, exact_hit *hit)
 {
     const uint32_t *corner = mesh->triangle[triangle];
     const double *a = mesh->position[corner[0]];
     double p[3], q[3], s[3];
-    vec3d_sub(out->edge[0], mesh->position[corner[1]], a);
-    vec3d_sub(out->edge[1], mesh->position[corner[2]], a);
-    vec3d_cross(p, ray->direction, out->edge[1]);
-    double determinant = vec3d_dot(out->edge[0], p);
-    double inverse = determinant != 0 ? 1 / determinant : 0;
+    vec3d_sub(hit->edge[0], mesh->position[corner[1]], a);
+    vec3d_sub(hit->edge[1], mesh->position[corner[2]], a);
     vec3d_sub(s, ray->origin, a);
-    vec3d_cross(q, s, out->edge[0]);
-    double u = vec3d_dot(s, p) * inverse, v = vec3d_dot(ray->direction, q) * inverse;
-    out->distance = vec3d_dot(out->edge[1], q) * inverse;
-    if (!(u >= 0 && v >= 0 && u + v <= 1) || determinant == 0) {
-        u = fmax(u, 0);
-        v = fmax(v, 0);
-        double sum = fmax(u + v, 1);
-        u /= sum;
-        v /= sum;
-        out->distance = -vec3d_dot(s, ray->direction) +
-                        u * vec3d_dot(out->edge[0], ray->direction) +
-                        v * vec3d_dot(out->edge[1], ray->direction);
+    vec3d_cross(p, ray->direction, hit->edge[1]);
+    vec3d_cross(q, s, hit->edge[0]);
+    double inverse = 1 / vec3d_dot(hit->edge[0], p);
+    hit->distance = vec3d_dot(hit->edge[1], q) * inverse;
+    if (!(hit->distance > distance_min && isfinite(hit->distance))) {
+        return false;
     }
-    out->barycentric[0] = 1 - u - v;
-    out->barycentric[1] = u;
-    out->barycentric[2] = v;
+    double u = vec3d_dot(s, p) * inverse, v = vec3d_dot(ray->direction, q) * inverse;
+    hit->barycentric[0] = 1 - u - v;
+    hit->barycentric[1] = u;
+    hit->barycentric[2] = v;
+    if (u < 0 || v < 0 || u + v > 1) {
+        clamp_hit(s, ray, hit);
+        hit->distance = fmax(hit->distance, distance_min);
+    }
+    return true;
 }
 
 static void keep_hit(ray_query *query, uint32_t triangle, const exact_hit *exact)
@@ -110,8 +123,8 @@ static void filter_candidate(const struct RTCFilterFunctionNArguments *args)
         args->valid[0] = 0;
         return;
     }
-    meet_triangle(query->mesh, triangle, query->ray, &exact);
-    if (!(exact.distance > query->distance_min && exact.distance < query->nearest)) {
+    if (!meet_triangle(query->mesh, triangle, query->ray, query->distance_min, &exact) ||
+        !(exact.distance < query->nearest)) {
         args->valid[0] = 0;
         return;
     }
@@ -152,13 +165,32 @@ static bool is_inside_box(const ray_mesh *mesh, const double p[3])
            p[1] <= mesh->upper[1] && p[2] >= mesh->lower[2] && p[2] <= mesh->upper[2];
 }
 
-static void make_local(const ray_mesh *mesh, const parian_ray *ray, double enter, double length,
-                       struct RTCRay *local)
+/* Move the local origin off the triangle that the ray starts on. */
+static void step_aside(const ray_mesh *mesh, const parian_ray *ray, double origin[3])
+{
+    const uint32_t *corner = mesh->triangle[ray->triangle];
+    const double *a = mesh->position[corner[0]];
+    double u[3], v[3], normal[3];
+    vec3d_sub(u, mesh->position[corner[1]], a);
+    vec3d_sub(v, mesh->position[corner[2]], a);
+    vec3d_cross(normal, u, v);
+    double length = vec3d_length(normal);
+    if (length > 0) {
+        double side = vec3d_dot(normal, ray->direction) < 0 ? -SIDE_STEP : SIDE_STEP;
+        vec3d_add_scaled(origin, normal, side / length);
+    }
+}
+
+static void make_local(const ray_mesh *mesh, const parian_ray *ray, bool from_triangle,
+                       double enter, double length, struct RTCRay *local)
 {
     double o[3];
     for (int k = 0; k < 3; k++) {
         o[k] = (ray->origin[k] + enter * ray->direction[k] - mesh->centre[k]) * mesh->scale -
                BACK_OFF * ray->direction[k];
+    }
+    if (from_triangle) {
+        step_aside(mesh, ray, o);
     }
     local->org_x = (float)o[0];
     local->org_y = (float)o[1];
@@ -179,6 +211,7 @@ static void trace_mesh(const parian_rays *rays, uint32_t index, ray_query *query
 {
     const ray_mesh *mesh = &rays->mesh[index];
     const parian_ray *ray = query->ray;
+    bool from_triangle = ray->mesh == index && ray->triangle < mesh->triangle_count;
     double enter = 0;
     if (!mesh->scene ||
         (!is_inside_box(mesh, ray->origin) && !enter_box(mesh, ray, query->nearest, &enter))) {
@@ -188,9 +221,9 @@ static void trace_mesh(const parian_rays *rays, uint32_t index, ray_query *query
     rtcInitIntersectContext(&query->context);
     query->mesh = mesh;
     query->mesh_index = index;
-    query->skip = ray->mesh == index ? ray->triangle : PARIAN_RAY_NONE;
+    query->skip = from_triangle ? ray->triangle : PARIAN_RAY_NONE;
     query->distance_min = DISTANCE_MIN / mesh->scale;
-    make_local(mesh, ray, enter, query->nearest, &local.ray);
+    make_local(mesh, ray, from_triangle, enter, query->nearest, &local.ray);
     if (query->hit) {
         local.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(mesh->scene, &query->context, &local);
@@ -259,6 +292,7 @@ static parian_result copy_mesh(const parian_env *env, const parian_mesh *mesh, r
         !PARIAN_NEW(env, to->triangle, mesh->triangle_count)) {
         return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u triangles", mesh->triangle_count);
     }
+    to->triangle_count = mesh->triangle_count;
     memcpy(to->position, mesh->position, mesh->vertex_count * sizeof *to->position);
     memcpy(to->triangle, mesh->triangle, mesh->triangle_count * sizeof *to->triangle);
     double extent = 0;
