@@ -1,5 +1,6 @@
-/* surface_quadrature.h - B at receivers as the integral of a BSSRDF over the surface: stratified random places by area,
- * refined around each receiver, in independent replicates that give the standard error.
+/* surface_quadrature.h - B at receivers as the integral of a BSSRDF over the surface: stratified
+ * random places by area, refined around each receiver, in independent replicates that give the
+ * standard error.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -11,13 +12,16 @@
 
 typedef struct parian_reference_quadrature_desc {
     parian_bssrdf_desc bssrdf;
-    uint64_t samples;  /* per receiver, all replicates together; 0 takes a default that meets 0.1 % on smooth light */
+    uint64_t samples; /* per receiver, all replicates together; 0 takes a default that meets 0.1 %
+                         on smooth light */
     uint64_t seed;
 } parian_reference_quadrature_desc;
 
-/* result is initialised by the callee; free it in every case. Errors: PARIAN_E_NOMEM, PARIAN_E_ARGUMENT,
- * PARIAN_E_INTERRUPTED. Threads: env->par; the numbers do not depend on their count. */
-parian_result parian_reference_quadrature(const parian_env *env, const parian_reference_scene *scene,
+/* result is initialised by the callee; free it in every case. Errors: PARIAN_E_NOMEM,
+ * PARIAN_E_ARGUMENT, PARIAN_E_INTERRUPTED. Threads: env->par; the numbers do not depend on their
+ * count. */
+parian_result parian_reference_quadrature(const parian_env *env,
+                                          const parian_reference_scene *scene,
                                           const parian_receivers *receivers,
                                           const parian_reference_quadrature_desc *desc,
                                           parian_reference_result *result);
