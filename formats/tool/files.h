@@ -49,6 +49,19 @@ parian_result parian_npy_write(const parian_env *env, const char *folder, const 
                                parian_element element, uint32_t rank, const uint64_t *shape,
                                const void *data);
 
+/* An array of numbers as a .npy file holds it, in doubles and C order. */
+typedef struct parian_npy {
+    uint32_t rank;
+    uint64_t shape[PARIAN_CHUNK_RANK_MAX];
+    size_t count; /* product of the shape */
+    double *value;
+} parian_npy;
+
+/* Read a .npy file (versions 1 to 3, little-endian floats and integers); free with parian_npy_free in every
+ * case. Errors: PARIAN_E_IO, PARIAN_E_FORMAT (what was found), PARIAN_E_LIMIT, PARIAN_E_NOMEM. */
+parian_result parian_npy_read(const parian_env *env, const char *path, parian_npy *array);
+void parian_npy_free(const parian_env *env, parian_npy *array);
+
 /* Temporary files that must go when a second Ctrl-C ends the process at once. A few slots; a path
  * that finds none, or is too long, is simply not remembered. Any thread. */
 void parian_temp_register(const char *path);

@@ -95,6 +95,9 @@ static const parian_option *find_option(const parse_state *state, const char *na
 {
     for (size_t i = 0; i < row_count(state); i++) {
         const parian_option *option = row(state, i);
+        if (option->kind == PARIAN_OPTION_GROUP) {
+            continue;
+        }
         if (strlen(option->name) == length && strncmp(option->name, name, length) == 0) {
             return option;
         }
@@ -156,7 +159,8 @@ static parian_result refuse_unknown(const parse_state *state, const char *argume
     const char *best = NULL;
     size_t distance = SIZE_MAX;
     for (size_t i = 0; i < row_count(state); i++) {
-        if (row(state, i)->kind != PARIAN_OPTION_LATER) {
+        parian_option_kind kind = row(state, i)->kind;
+        if (kind != PARIAN_OPTION_LATER && kind != PARIAN_OPTION_GROUP) {
             consider(argument, length, row(state, i)->name, &best, &distance);
             consider(argument, length, row(state, i)->alias, &best, &distance);
         }
@@ -278,6 +282,7 @@ static parian_result set_value(const parse_state *state, const parian_option *op
         return set_choice(state, option, text);
     case PARIAN_OPTION_FLAG:
     case PARIAN_OPTION_LATER:
+    case PARIAN_OPTION_GROUP:
         break;
     }
     return PARIAN_E_ARGUMENT;

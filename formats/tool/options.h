@@ -18,7 +18,8 @@ typedef enum parian_option_kind {
     PARIAN_OPTION_NUMBER, /* --name X          double *, within [minimum, maximum] */
     PARIAN_OPTION_LENGTH, /* --name 50mm       double *, metres; units um mm cm m */
     PARIAN_OPTION_CHOICE, /* --name a|b|c      int *, index into choices */
-    PARIAN_OPTION_LATER   /* known, not built yet: refused with exit 5, absent from help */
+    PARIAN_OPTION_LATER,  /* known, not built yet: refused with exit 5, absent from help */
+    PARIAN_OPTION_GROUP   /* no option: name is a heading of --help above the rows that follow */
 } parian_option_kind;
 
 enum { PARIAN_STRING_LIST_MAX = 256 };

@@ -58,6 +58,10 @@ static void print_option(const parian_option *option, size_t help_column)
     if (option->kind == PARIAN_OPTION_LATER) {
         return;
     }
+    if (option->kind == PARIAN_OPTION_GROUP) {
+        printf("\n%s:\n", option->name);
+        return;
+    }
     size_t length = option_head(option, head);
     printf("%*s%s", HEAD_INDENT, "", head);
     if (HEAD_INDENT + length + 2 > help_column) {
@@ -77,8 +81,9 @@ static size_t find_help_column(const parian_option *options, size_t count)
     for (size_t i = 0; i < count; i++) {
         char head[HEAD_MAX];
         size_t needed = HEAD_INDENT + option_head(&options[i], head) + 2;
-        if (options[i].kind != PARIAN_OPTION_LATER && needed <= HELP_COLUMN_MAX &&
-            needed > column) {
+        bool shown =
+            options[i].kind != PARIAN_OPTION_LATER && options[i].kind != PARIAN_OPTION_GROUP;
+        if (shown && needed <= HELP_COLUMN_MAX && needed > column) {
             column = needed;
         }
     }
@@ -102,7 +107,7 @@ parian_result parian_options_print_help(const parian_command *command,
         putchar('\n');
         print_wrapped(command->summary, 0, 0);
     }
-    if (command->option_count > 0) {
+    if (command->option_count > 0 && command->options[0].kind != PARIAN_OPTION_GROUP) {
         puts("\nOptions:");
     }
     for (size_t i = 0; i < command->option_count; i++) {
