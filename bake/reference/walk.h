@@ -1,10 +1,10 @@
-/* walk.h - what every random walk in a medium shares: free flights, scattering, the boundary,
- * roulette and the books that prove its energy. Inline, for these are the inner loops.
+/* walk.h - what every random walk in a medium shares: free flights, scattering, the
+ * boundary, roulette and the books that prove its energy. Inline, for these are the inner loops.
  *
  * A walk carries a weight. At a scattering event it leaves the absorbed share behind
  * (parian_walk_absorb), at the boundary the share that crosses (parian_walk_leave), and goes on
- * with the rest; two roulettes end it (parian_walk_continue). Nothing calls the C library's
- * mathematics but sqrt, which is exact, so that walks are the same on every machine.
+ * with the rest; two roulettes end it (parian_walk_continue). No mathematics of the C library but
+ * sqrt, which is exact: a walk's steps are the same on every machine.
  *
  * Source  phase function [Henyey41]; frame about an axis [Duff17]
  *
@@ -41,7 +41,7 @@ typedef struct parian_walk_medium {
  * lost. */
 typedef struct parian_walk_books {
     double started, left, absorbed, roulette_added, roulette_removed;
-    double lost;     /* by walks that a hole of the mesh let out, and that were ended */
+    double lost;     /* by walks that a hole let out, or that neither matter nor boundary can end */
     uint64_t events; /* scattering events */
     uint64_t lost_walks;
 } parian_walk_books;
