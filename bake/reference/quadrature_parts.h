@@ -54,7 +54,7 @@ typedef struct quadrature_surface {
     quadrature_arrival *arrival; /* [stratum_count * arrivals_per_place] */
     uint32_t arrivals_per_place; /* 0: the model does not tell directions apart */
     quadrature_guide guide;
-    bool tabulated; /* a standard dipole or dipole-flux: `model` is made */
+    bool tabulated; /* `model` is made: the BSSRDF does not tell directions apart */
     parian_transport_model model;
     parian_bssrdf_model *bssrdf;
 } quadrature_surface;

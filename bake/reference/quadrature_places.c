@@ -102,22 +102,37 @@ static parian_result make_blocks(const parian_env *env, quadrature_surface *surf
     return PARIAN_OK;
 }
 
-/* The tables of the bake's own transport, which want a body with its box. */
+static double bssrdf_by_distance(const void *context, int channel, double r2)
+{
+    static const double origin[3] = {0, 0, 0}, up[3] = {0, 0, 1};
+    const double x[3] = {sqrt(r2), 0, 0};
+    double R[3];
+    parian_bssrdf_value(context, origin, up, up, x, up, R);
+    return R[channel];
+}
+
+/* Tables for models that do not tell directions apart. Those of the dipole are the bake's own
+ * transport, which wants a body with its box; photon beam diffusion goes by distance. */
 static parian_result make_tables(const quadrature_job *job, const parian_reference_body *body,
                                  const double diagonal[3], quadrature_surface *surface)
 {
+    parian_reference_model model = job->desc->bssrdf.model;
     float corner[2][3] = {{0, 0, 0}, {(float)diagonal[0], (float)diagonal[1], (float)diagonal[2]}};
     parian_body box = {.medium = body->medium,
-                       .bssrdf = job->desc->bssrdf.model == PARIAN_REFERENCE_DIPOLE_FLUX
-                                     ? PARIAN_BSSRDF_DIPOLE_FLUX
-                                     : PARIAN_BSSRDF_DIPOLE,
+                       .bssrdf = model == PARIAN_REFERENCE_DIPOLE_FLUX ? PARIAN_BSSRDF_DIPOLE_FLUX
+                                                                       : PARIAN_BSSRDF_DIPOLE,
                        .fit_fdr = job->desc->bssrdf.fit_fdr,
                        .vertex_count = 2,
                        .vertex_position = corner};
-    surface->tabulated = job->desc->bssrdf.model <= PARIAN_REFERENCE_DIPOLE_FLUX;
-    return surface->tabulated
-               ? parian_transport_model_make(job->env, &box, PARIAN_MODEL_FULL, &surface->model)
-               : PARIAN_OK;
+    surface->tabulated = !parian_bssrdf_is_directional(surface->bssrdf);
+    if (!surface->tabulated) {
+        return PARIAN_OK;
+    }
+    return model == PARIAN_REFERENCE_PBD
+               ? parian_radial_table_make(
+                     job->env, bssrdf_by_distance, surface->bssrdf, surface->guide.core2,
+                     sqrt(parian_dot3(diagonal, diagonal)), &surface->model.value)
+               : parian_transport_model_make(job->env, &box, PARIAN_MODEL_FULL, &surface->model);
 }
 
 static uint32_t count_arrivals(const parian_reference_scene *scene)
@@ -143,11 +158,11 @@ parian_result quadrature_surface_make(const quadrature_job *job, uint32_t body, 
     parian_result r =
         parian_bssrdf_create(job->env, &b->medium, &job->desc->bssrdf, &surface->bssrdf);
     if (r == PARIAN_OK) {
-        r = make_tables(job, b, diagonal, surface);
-    }
-    if (r == PARIAN_OK) {
         double length = sqrt(parian_dot3(diagonal, diagonal));
         r = make_guide(job, &b->medium, length, places, surface);
+    }
+    if (r == PARIAN_OK) {
+        r = make_tables(job, b, diagonal, surface);
     }
     if (r == PARIAN_OK) {
         r = parian_strata_tree_make(job->env, &b->mesh, &surface->tree);

@@ -129,6 +129,9 @@ static parian_result run_body(quadrature_job *job, const replicate_plan *plan, u
 {
     double bodies = job->scene->body_count, replicates = (double)plan->replicates;
     parian_result r = quadrature_surface_make(job, body, plan->places, &job->surface);
+    for (int c = 0; r == PARIAN_OK && job->desc->scale && c < 3; c++) {
+        job->desc->scale[body][c] = parian_bssrdf_scale(job->surface.bssrdf, c);
+    }
     for (uint64_t k = 0; r == PARIAN_OK && k < plan->replicates; k++) {
         job->replicate = k;
         r = run_replicate(job, (body + (double)k / replicates) / bodies, 1 / (replicates * bodies));

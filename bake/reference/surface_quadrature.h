@@ -15,6 +15,8 @@ typedef struct parian_reference_quadrature_desc {
     uint64_t samples; /* per receiver, all replicates together; 0 takes a default that meets 0.1 %
                          on smooth light */
     uint64_t seed;
+    double (
+        *scale)[3]; /* [body_count] receives the factors of bssrdf.normalise; NULL: not wanted */
 } parian_reference_quadrature_desc;
 
 /* result is initialised by the callee; free it in every case. Errors: PARIAN_E_NOMEM,
