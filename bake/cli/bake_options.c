@@ -28,7 +28,8 @@ static const char SUMMARY[] =
     "Turns a model and a measured medium into a .parian asset that the runtime relights.\n"
     "INPUT is .glb .gltf .obj .ply .stl or .off. In a glTF scene every node whose material\n"
     "scatters is a body; the other meshes are its diffuse surroundings. Bodies beyond four\n"
-    "share the vertices and texels of four.";
+    "share the vertices and texels of four.\n"
+    "parian-bake reference computes ground truth instead; see parian-bake reference --help.";
 
 static const char EPILOGUE[] =
     "Examples:\n"

@@ -9,6 +9,7 @@
 #include <cjson/cJSON.h>
 
 #include "bake/cli/bake_options.h"
+#include "bake/cli/reference_command.h"
 #include "bake/stages/media.h"
 #include "tool/session.h"
 
@@ -61,8 +62,7 @@ int main(int argc, char **argv)
 {
     static parian_bake_options options;
     if (argc > 1 && strcmp(argv[1], "reference") == 0) {
-        fprintf(stderr, "parian-bake: 'reference' is not built yet\n");
-        return parian_result_exit_status(PARIAN_E_UNSUPPORTED);
+        return parian_reference_command(argc, argv);
     }
     parian_result r = parian_bake_options_parse(argc, argv, &options);
     if (r != PARIAN_OK) {

@@ -54,6 +54,10 @@ parian_result parian_select_bodies(const parian_env *env, const parian_bake_desc
                                    const parian_source_scene *scene, parian_selection *selection);
 void parian_selection_free(const parian_env *env, parian_selection *selection);
 
+/* The medium that a name of a preset or a FILE.json stands for. Errors: PARIAN_E_ARGUMENT (no such
+ * preset), PARIAN_E_FORMAT, PARIAN_E_IO. */
+parian_result parian_find_medium(const parian_env *env, const char *text, parian_medium *medium);
+
 /* Bring a scene to metres and size (scale_m, unit_m, keep_origin); lights move along. */
 parian_result parian_scale_scene(const parian_env *env, const parian_bake_desc *desc,
                                  const parian_selection *selection, parian_source_scene *scene);

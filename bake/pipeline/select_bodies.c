@@ -22,7 +22,7 @@ static bool is_file_name(const char *text)
     return strchr(text, '/') || (n > 5 && strcasecmp(text + n - 5, ".json") == 0);
 }
 
-static parian_result find_medium(const parian_env *env, const char *text, parian_medium *medium)
+parian_result parian_find_medium(const parian_env *env, const char *text, parian_medium *medium)
 {
     if (is_file_name(text)) {
         return parian_media_read_file(env, text, medium);
@@ -52,7 +52,7 @@ static parian_result parse_choice(const parian_env *env, const char *text, mater
         choice->mesh[n] = 0;
         text = equals + 1;
     }
-    return find_medium(env, text, &choice->medium);
+    return parian_find_medium(env, text, &choice->medium);
 }
 
 static const parian_source_material *material_of(const parian_source_scene *scene, uint32_t part)
@@ -136,7 +136,7 @@ static parian_result medium_of_part(const parian_env *env, const parian_source_s
     parian_log(env, PARIAN_LOG_WARNING,
                "'%s' has no scattering medium of its own and no --material: taken as marble",
                scene->parts[part].name);
-    return find_medium(env, "marble", medium);
+    return parian_find_medium(env, "marble", medium);
 }
 
 static parian_result check_choices_used(const parian_env *env, const material_choice *choices,
