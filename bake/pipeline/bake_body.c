@@ -9,12 +9,10 @@
 
 #include "bake/pipeline/bake.h"
 #include "bake/stages/detail.h"
+#include "bake/stages/surface.h"
 #include "bake/stages/texels.h"
 #include "core/memory.h"
 #include "tool/session.h"
-
-/* Corners sharper than this keep separate normals. */
-static const double CREASE_DEG = 50;
 
 typedef struct body_job {
     const parian_bake_desc *desc;
@@ -34,7 +32,7 @@ static parian_result step_surface(const parian_env *env, body_job *job)
 /* The transfer surface as the body stores it: floats, with corner normals. */
 static parian_result store_surface(const parian_env *env, parian_mesh *mesh, parian_body *body)
 {
-    parian_result r = parian_mesh_make_corner_normals(env, mesh, CREASE_DEG);
+    parian_result r = parian_mesh_make_corner_normals(env, mesh, PARIAN_CREASE_DEG);
     if (r != PARIAN_OK) {
         return r;
     }

@@ -5,10 +5,9 @@
 #include <string.h>
 
 #include "bake/pipeline/bake.h"
+#include "bake/stages/surface.h"
 #include "core/memory.h"
 #include "tool/picture.h"
-
-static const double CREASE_DEG = 50;
 
 /* Base colour factor times the mean of its texture, linear. */
 static void mean_reflectance(const parian_source_scene *scene, const parian_source_part *part,
@@ -64,7 +63,7 @@ parian_result parian_make_surrounding(const parian_env *env, const parian_source
     memcpy(surrounding->name, source->name, sizeof surrounding->name);
     mean_reflectance(scene, source, surrounding->reflectance);
     if (!source->mesh.corner_normal) {
-        r = parian_mesh_make_corner_normals(env, &source->mesh, CREASE_DEG);
+        r = parian_mesh_make_corner_normals(env, &source->mesh, PARIAN_CREASE_DEG);
     }
     if (r == PARIAN_OK) {
         r = copy_mesh(env, &source->mesh, surrounding);

@@ -43,6 +43,7 @@ typedef struct parian_reference_body {
     bool closed;      /* no boundary edge: inside and outside are known */
     parian_medium medium;
     parian_medium_field *field; /* NULL: homogeneous */
+    bool fit_fdr;               /* what an asset was baked with; false for a model */
 } parian_reference_body;
 
 struct parian_rays;

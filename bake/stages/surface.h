@@ -7,6 +7,9 @@
 
 #include "core/mesh.h"
 
+/* Corners sharper than this keep separate normals, in bodies, their surroundings and references alike. */
+#define PARIAN_CREASE_DEG 50.0
+
 typedef struct parian_surface_report {
     uint32_t welded_vertices, unreferenced_vertices, degenerate_triangles, duplicate_triangles;
     uint32_t split_vertices;     /* non-manifold vertices and edges duplicated */
