@@ -99,7 +99,7 @@ static parian_result read_shape(const npy_file *file, parian_npy *array)
     if (!at || *at != '(' || !order) {
         return parian_fail(file->env, PARIAN_E_FORMAT, "%s: its header names no shape", file->path);
     }
-    for (at++; *at != ')'; at += strspn(at, ", ")) {
+    for (at += 1 + strspn(at + 1, " "); *at != ')'; at += strspn(at, ", ")) {
         char *end;
         unsigned long long n = strtoull(at, &end, 10);
         if (!isdigit((unsigned char)*at) || array->rank == PARIAN_CHUNK_RANK_MAX) {

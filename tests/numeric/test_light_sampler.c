@@ -481,7 +481,7 @@ static void uniform_sky_on_a_ball(void **state)
 
 /* A ball of 320 facets under a distant light: E = cosine times transmittance of the smooth normal,
  * up to the horizon, at all but one place in 100 where the offset does not suffice; without it one
- * in seven of the places within 10 degrees of the horizon would be dark. */
+ * in nine of the places within 10 degrees of the horizon would be dark. */
 static void facets_do_not_shadow_a_curved_surface(void **state)
 {
     enum { PLACES = 4000 };
