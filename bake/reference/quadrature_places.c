@@ -12,36 +12,68 @@
 #include "core/small_maths.h"
 
 enum { EXTENT_SAMPLES = 4 /* of each light of extent at a shared place */ };
-static const double SIZE_OVER_DISTANCE = 0.25;
-static const double SHARED_PART = 0.75; /* of the places of a replicate; the rest are fresh ones */
+static const double SIZE_OVER_DISTANCE = 0.35;
+static const double SHARED_PART = 0.5; /* of the places of a replicate; the rest are fresh ones */
 
 /* ---- guide -------------------------------------------------------------------------------------
  */
+static double bssrdf_by_distance(const void *context, int channel, double r2)
+{
+    static const double origin[3] = {0, 0, 0}, up[3] = {0, 0, 1};
+    const double x[3] = {sqrt(r2), 0, 0};
+    double R[3];
+    parian_bssrdf_value(context, origin, up, up, x, up, R);
+    return R[channel];
+}
+
+/* The BSSRDF on a plane under light along the normal. */
 typedef struct guide_source {
-    parian_dipole dipole[3];
+    const parian_bssrdf_model *bssrdf;
     double total[3];
 } guide_source;
 
 static double guide_density(const void *context, int channel, double r2)
 {
     const guide_source *s = context;
-    return s->total[channel] > 0 ? parian_dipole_rd(&s->dipole[channel], r2) / s->total[channel]
+    return s->total[channel] > 0 ? bssrdf_by_distance(s->bssrdf, channel, r2) / s->total[channel]
                                  : 0;
+}
+
+/* Length on which a channel varies near 0: what the model says, or where it has fallen to half. */
+static double channel_core(const parian_bssrdf_model *bssrdf, int channel)
+{
+    double r = parian_bssrdf_core_length(bssrdf, channel);
+    double half = 0.5 * bssrdf_by_distance(bssrdf, channel, 0);
+    for (int i = 0; i < 200 && bssrdf_by_distance(bssrdf, channel, r * r) < half; i++) {
+        r *= 0.8;
+    }
+    return r;
+}
+
+/* Rough totals: steps of 4 % in distance from far below the core to far beyond it. */
+static void add_totals(guide_source *source, double core)
+{
+    for (int i = -100; i < 500; i++) {
+        double r = core * exp(0.04 * i);
+        for (int c = 0; c < 3; c++) {
+            source->total[c] +=
+                2 * PARIAN_PI * r * r * 0.04 * bssrdf_by_distance(source->bssrdf, c, r * r);
+        }
+    }
 }
 
 static parian_result make_guide(const quadrature_job *job, const parian_medium *medium,
                                 double diagonal, uint64_t places, quadrature_surface *surface)
 {
-    guide_source source;
+    guide_source source = {.bssrdf = surface->bssrdf};
     double core = INFINITY;
     for (int c = 0; c < 3; c++) {
-        source.dipole[c] = parian_dipole_make(medium, c, job->desc->bssrdf.fit_fdr);
-        source.total[c] = parian_dipole_total(&source.dipole[c]);
-        if (source.dipole[c].albedo > 0) {
-            core = fmin(core, parian_bssrdf_core_length(surface->bssrdf, c));
+        if (medium->sigma_s_prime[c] > 0) {
+            core = fmin(core, channel_core(surface->bssrdf, c));
         }
     }
     core = core > 0 && core < diagonal ? core : diagonal;
+    add_totals(&source, core);
     surface->guide.core2 = core * core;
     surface->guide.tolerance = 1 / fmax(1, (1 - SHARED_PART) * (double)places);
     return parian_radial_table_make(job->env, guide_density, &source, core * core, diagonal,
@@ -100,15 +132,6 @@ static parian_result make_blocks(const parian_env *env, quadrature_surface *surf
         bound_block(surface, block);
     }
     return PARIAN_OK;
-}
-
-static double bssrdf_by_distance(const void *context, int channel, double r2)
-{
-    static const double origin[3] = {0, 0, 0}, up[3] = {0, 0, 1};
-    const double x[3] = {sqrt(r2), 0, 0};
-    double R[3];
-    parian_bssrdf_value(context, origin, up, up, x, up, R);
-    return R[channel];
 }
 
 /* Tables for models that do not tell directions apart. Those of the dipole are the bake's own
