@@ -18,7 +18,7 @@
 #include "core/memory.h"
 #include "core/small_maths.h"
 
-#define BEAM_STEP  0.25 /* of the logarithm of depth */
+#define BEAM_STEP  0.25 /* of the logarithm of depth: error exp(-pi^2 / step) */
 #define TABLE_STEP 0.05 /* of the logarithm of distance */
 
 /* Grosjean's diffusion for a medium of unit sigma_t'. */
@@ -55,7 +55,7 @@ static double dipole_exitance(const beam *b, double r, double z)
 double parian_pbd_multiple(const parian_bssrdf_channel *c, const parian_exitance *e, double r)
 {
     beam b = make_beam(c, e);
-    double sum = 0, first = log(1e-10 * fmin(r, 1)), last = log(50.0);
+    double sum = 0, first = log(1e-9 * fmin(r, 1)), last = log(50.0);
     for (double t = first; t < last; t += BEAM_STEP) {
         double z = exp(t);
         sum += z * exp(-z) * dipole_exitance(&b, r, z);
@@ -76,7 +76,7 @@ double parian_pbd_single(const parian_bssrdf_channel *c, double r)
 {
     double sigma_t = c->sigma_t / c->sigma_t_prime, eta = c->eta;
     double critical = eta > 1 ? r * sqrt(eta * eta - 1) : 0;
-    double sum = 0, first = log(1e-10 * fmin(r, 1 / sigma_t)), last = log(50 / sigma_t);
+    double sum = 0, first = log(1e-8 * fmin(r, 1 / sigma_t)), last = log(50 / sigma_t);
     for (double t = first; t < last; t += BEAM_STEP) {
         double past = exp(t), z = critical + past, d = sqrt(r * r + z * z), cosine = z / d;
         double through = parian_fresnel_transmittance(cosine, 1 / eta);

@@ -377,6 +377,53 @@ static void directional_normalised(void **state)
     }
 }
 
+/* The table of docs/reference.md: transfer, dipole, pbd, and the directional dipole under diffuse
+ * and normal light, before normalisation. One in the last digit. */
+static void documented_totals(void **state)
+{
+    const parian_medium matched = {
+        .sigma_s_prime = {990, 900, 500}, .sigma_a = {10, 100, 500}, .eta = 1};
+    parian_medium rarer = matched, forward = matched;
+    const struct {
+        const parian_medium *medium;
+        int channel;
+        double total[5];
+    } table[] = {
+        {&marble, 0, {0.8425, 0.8303, 0.8586, 1.0195, 1.0191}},
+        {&marble, 1, {0.8050, 0.7911, 0.8191, 0.9783, 0.9767}},
+        {&marble, 2, {0.7677, 0.7528, 0.7798, 0.9374, 0.9346}},
+        {&skimmilk, 2, {0.7084, 0.6824, 0.7255, 0.9204, 0.9122}},
+        {&skin, 0, {0.4575, 0.4360, 0.4627, 0.6568, 0.6359}},
+        {&skin, 1, {0.2272, 0.2274, 0.2282, 0.4199, 0.3906}},
+        {&ketchup, 0, {0.1586, 0.1639, 0.1598, 0.3499, 0.3191}},
+        {&ketchup, 2, {0.0017, 0.0018, 0.0016, 0.1726, 0.1410}},
+        {&matched, 0, {0.7946, 0.7467, 0.8411, 1.0982, 1.0866}},
+        {&rarer, 1, {0.4525, 0.3704, 0.4479, 0.7382, 0.6710}},
+        {&forward, 1, {0.2970, 0.2992, 0.2428, 0.5015, 0.4746}},
+    };
+    (void)state;
+    rarer.eta = 0.7;
+    forward.eta = 1.3;
+    forward.g[1] = 0.9;
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        parian_bssrdf_channel channel =
+            parian_bssrdf_channel_make(table[i].medium, table[i].channel);
+        parian_dipole dipole = parian_dipole_make(table[i].medium, table[i].channel, false);
+        parian_directional_dipole ray = parian_directional_dipole_make(&channel, false);
+        parian_pbd_profile profile;
+        assert_int_equal(parian_pbd_profile_make(NULL, &channel, &profile), PARIAN_OK);
+        const double found[5] = {
+            parian_half_space_reflectance(channel.albedo, channel.g, channel.eta),
+            parian_dipole_total(&dipole), profile.total,
+            parian_directional_dipole_diffuse_total(&ray),
+            parian_directional_dipole_planar_total(&ray, 1)};
+        for (int k = 0; k < 5; k++) {
+            assert_true(fabs(found[k] - table[i].total[k]) < 1e-4);
+        }
+        parian_pbd_profile_free(NULL, &profile);
+    }
+}
+
 /* Turning the whole scene turns nothing else: values depend on relative places and directions only.
  */
 static void directional_is_invariant(void **state)
@@ -405,6 +452,7 @@ int main(void)
         cmocka_unit_test(dipole_matches_table),      cmocka_unit_test(fit_has_an_effect),
         cmocka_unit_test(directional_matches_table), cmocka_unit_test(directional_raw_totals),
         cmocka_unit_test(directional_normalised),    cmocka_unit_test(directional_is_invariant),
+        cmocka_unit_test(documented_totals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

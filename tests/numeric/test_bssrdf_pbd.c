@@ -37,39 +37,44 @@ static parian_bssrdf_model *make(const parian_medium *medium, parian_reference_m
     return made;
 }
 
-/* The model as it is written down, at depth z, m: exitance of multiple scattering per unit of beam.
- */
-static double multiple_scattering(double s, double a, double eta, double r, double z)
+/* The model as it is written down, and its medium, m^-1. */
+typedef struct beam {
+    double s, a, t; /* sigma_s', sigma_a, and their sum */
+    double eta, c1, c2;
+} beam;
+
+/* Exitance of a source at depth z, m, per unit of the beam's power. */
+static double multiple_scattering(const beam *b, double r, double z)
 {
-    double st = s + a, rho = s / st, D = (2 * a + s) / (3 * st * st), tr = sqrt(a / D);
-    double c1 = parian_fresnel_c1(1 / eta), c2 = parian_fresnel_c2(1 / eta);
-    double z_v = -z - 4 * D * (1 + 3 * c2) / (1 - 2 * c1);
+    double D = (2 * b->a + b->s) / (3 * b->t * b->t), tr = sqrt(b->a / D), rho = b->s / b->t;
+    double z_v = -z - 4 * D * (1 + 3 * b->c2) / (1 - 2 * b->c1);
     double d_r = sqrt(r * r + z * z), d_v = sqrt(r * r + z_v * z_v);
     double fluence = (exp(-tr * d_r) / d_r - exp(-tr * d_v) / d_v) / (4 * PARIAN_PI * D);
     double flux = (z * (1 + tr * d_r) * exp(-tr * d_r) / pow(d_r, 3) -
                    z_v * (1 + tr * d_v) * exp(-tr * d_v) / pow(d_v, 3)) /
                   (4 * PARIAN_PI);
-    double kappa = 1 - exp(-2 * st * (d_r + z));
-    return rho * rho * kappa * ((1 - 2 * c1) / 4 * fluence + (1 - 3 * c2) / 2 * flux);
+    double kappa = 1 - exp(-2 * b->t * (d_r + z));
+    return rho * rho * kappa * ((1 - 2 * b->c1) / 4 * fluence + (1 - 3 * b->c2) / 2 * flux);
 }
 
-/* Single scattering, isotropic; z beyond the critical depth. */
-static double single_scattering(double s, double a, double eta, double r, double z)
+/* Isotropic, z beyond the critical depth. */
+static double single_scattering(const beam *b, double r, double z)
 {
-    double st = s + a, d = sqrt(r * r + z * z), cosine = z / d;
-    return s / st * exp(-st * d) / (d * d) / (4 * PARIAN_PI) *
-           (1 - parian_fresnel_reflectance(cosine, 1 / eta)) * cosine;
+    double d = sqrt(r * r + z * z), cosine = z / d;
+    return b->s / b->t * exp(-b->t * d) / (d * d) / (4 * PARIAN_PI) *
+           (1 - parian_fresnel_reflectance(cosine, 1 / b->eta)) * cosine;
 }
 
 /* Midpoint rule over depth, drawn as a beam loses light. */
 static double integrate_beam(double s, double a, double eta, double r)
 {
     enum { N = 20000 };
-    double st = s + a, critical = eta > 1 ? r * sqrt(eta * eta - 1) : 0, sum = 0;
+    beam b = {s, a, s + a, eta, parian_fresnel_c1(1 / eta), parian_fresnel_c2(1 / eta)};
+    double critical = eta > 1 ? r * sqrt(eta * eta - 1) : 0, sum = 0;
     for (int i = 0; i < N; i++) {
-        double depth = -log(1 - (i + 0.5) / N) / st;
-        sum += multiple_scattering(s, a, eta, r, depth);
-        sum += exp(-st * critical) * single_scattering(s, a, eta, r, critical + depth);
+        double depth = -log(1 - (i + 0.5) / N) / b.t;
+        sum += multiple_scattering(&b, r, depth);
+        sum += exp(-b.t * critical) * single_scattering(&b, r, critical + depth);
     }
     return sum / N;
 }
