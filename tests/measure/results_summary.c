@@ -10,14 +10,19 @@
 
 enum { NAME_WIDTH = 34, CELL = 64 };
 
-/* The end of a long name carries what tells it from others: keep it, behind dots. */
-static void shorten(const char *name, size_t width, char out[CELL])
+/* Three digits, and no exponent above a second. */
+static void format_ms(double ms, char text[CELL])
 {
-    size_t n = strlen(name);
-    if (n <= width) {
-        snprintf(out, CELL, "%s", name);
+    snprintf(text, CELL, ms < 100 ? "%.3g" : "%.0f", ms);
+}
+
+/* A name in its column; one that is too long has a line of its own. */
+static void add_name(const char *name, parian_text *text)
+{
+    if (strlen(name) <= NAME_WIDTH) {
+        parian_text_add(text, "%-*s", NAME_WIDTH, name);
     } else {
-        snprintf(out, CELL, "..%s", name + n - (width - 2));
+        parian_text_add(text, "%s\n%-*s", name, NAME_WIDTH, "");
     }
 }
 
@@ -39,23 +44,26 @@ static void name_of(const parian_measure_row *row, char *name, size_t size)
 
 static void add_line(const parian_measurement *m, int markdown, parian_text *text)
 {
-    char name[2 * PARIAN_RESULT_TEXT_MAX + 2], cell[CELL], seconds[16] = "-";
+    char name[2 * PARIAN_RESULT_TEXT_MAX + 2], seconds[16] = "-", ms[CELL];
     const parian_measure_row *row = m->row;
     name_of(row, name, sizeof name);
+    format_ms(row->relight_ms, ms);
     if (!isnan(row->bake_s)) {
         snprintf(seconds, sizeof seconds, "%.1f", row->bake_s);
     }
     if (markdown) {
-        parian_text_add(
-            text, "| `%s` | %s | %.2f | %.2f | %.4f | %.2f | %.3f | %.3g | %.2f | %s |\n", name,
-            row->backend, 100 * m->l1, 100 * m->l2, m->energy_ratio, 100 * m->p999, m->minimum,
-            row->relight_ms, (double)row->asset_bytes * 1e-6, seconds);
+        parian_text_add(text, "| `%s` | %s | %.2f | %.2f | %.4f | %.2f | %.3f | %s | %.2f | %s |\n",
+                        name, row->backend, 100 * m->l1, 100 * m->l2, m->energy_ratio,
+                        100 * m->p999, m->minimum, ms, (double)row->asset_bytes * 1e-6, seconds);
         return;
     }
-    shorten(name, NAME_WIDTH, cell);
-    parian_text_add(text, "%-*s %6.2f %6.2f %7.4f %7.2f %6.3f %9.3g %7.2f %7s\n", NAME_WIDTH, cell,
-                    100 * m->l1, 100 * m->l2, m->energy_ratio, 100 * m->p999, m->minimum,
-                    row->relight_ms, (double)row->asset_bytes * 1e-6, seconds);
+    add_name(name, text);
+    parian_text_add(text, " %6.2f %6.2f %7.4f %7.2f %6.3f %9s %7.2f %7s\n", 100 * m->l1,
+                    100 * m->l2, m->energy_ratio, 100 * m->p999, m->minimum, ms,
+                    (double)row->asset_bytes * 1e-6, seconds);
+    if (m->not_finite > 0) {
+        parian_text_add(text, "  %zu values of B are not finite, and left out\n", m->not_finite);
+    }
 }
 
 static void add_names(int markdown, parian_text *text)
@@ -91,20 +99,18 @@ void parian_results_summary(const parian_results *results, int markdown, parian_
 static void add_reading(const parian_results *results, const char *budget, size_t found,
                         int markdown, parian_text *text)
 {
-    char name[2 * PARIAN_RESULT_TEXT_MAX + 2] = "none", cell[CELL], l2[16] = "-", ms[16] = "-",
-                                           mb[16] = "-";
+    char name[2 * PARIAN_RESULT_TEXT_MAX + 2] = "none", l2[16] = "-", ms[CELL] = "-", mb[16] = "-";
     if (found != SIZE_MAX) {
         parian_measurement m = parian_measurement_at(results, found);
         name_of(m.row, name, sizeof name);
         snprintf(l2, sizeof l2, "%.2f", 100 * m.l2);
-        snprintf(ms, sizeof ms, "%.3g", m.row->relight_ms);
+        format_ms(m.row->relight_ms, ms);
         snprintf(mb, sizeof mb, "%.2f", (double)m.row->asset_bytes * 1e-6);
     }
     if (markdown) {
         parian_text_add(text, "| %s | `%s` | %s | %s | %s |\n", budget, name, l2, ms, mb);
     } else {
-        shorten(name, NAME_WIDTH, cell);
-        parian_text_add(text, "%-22s %-*s %8s %9s %8s\n", budget, NAME_WIDTH, cell, l2, ms, mb);
+        parian_text_add(text, "%-16s %7s %9s %8s  %s\n", budget, l2, ms, mb, name);
     }
 }
 
@@ -120,8 +126,7 @@ void parian_results_readings(const parian_results *results, int markdown, parian
             parian_text_add(text,
                             "| budget | best | L2 %% | relight ms | MB |\n|---|---|---|---|---|\n");
         } else {
-            parian_text_add(text, "%-22s %-*s %8s %9s %8s\n", "budget", NAME_WIDTH, "best", "L2 %",
-                            "ms", "MB");
+            parian_text_add(text, "%-16s %7s %9s %8s  %s\n", "budget", "L2 %", "ms", "MB", "best");
         }
         for (int b = 0; b < PARIAN_TIME_BUDGETS; b++) {
             snprintf(budget, sizeof budget, "within %g ms", parian_time_budget_ms[b]);
