@@ -52,20 +52,20 @@ static planar_ray start(parian_planar_shape shape, double size, bool far_side,
     return ray;
 }
 
-/* Up to 30,000 hops, each of which rounds by 1e-16 / cosine and turns the next by as much: below
- * 1e-9 for cosines from 0.02. */
+/* Hops turn each other's errors into distance, n^2 1e-16 / cosine after n: 300 hops at a cosine of
+ * 0.1 leave 1e-10. */
 static void skipping_is_hopping(void **state)
 {
     (void)state;
     parian_random random = parian_random_stream(1, 0, 0, 0);
     for (int i = 0; i < 4000; i++) {
         parian_planar_shape shape = i % 2 ? PARIAN_SPHERE : PARIAN_SLAB;
-        double size = 0.7, length = (i % 3 ? 3 : 400) * parian_random_unit(&random);
+        double size = 0.7, length = (i % 3 ? 3 : 40) * parian_random_unit(&random);
         planar_ray hopped = start(shape, size, i % 4 < 2, &random), skipped = hopped;
         double cosine = shape == PARIAN_SPHERE
                             ? -planar_dot(skipped.position, skipped.direction) / size
                             : fabs(skipped.direction[2]);
-        if (cosine < 0.02) {
+        if (cosine < 0.1) {
             continue;
         }
         double rest = shape == PARIAN_SPHERE ? planar_skip_sphere(size, cosine, &skipped, length)
