@@ -74,10 +74,9 @@ static bool sample_uniform_sky(const parian_light *light, const double normal[3]
     return true;
 }
 
-/* One sample of transmitted irradiance with two uniform numbers; zero where nothing comes. */
-static void sample_irradiance(const parian_reference_scene *scene, uint32_t light,
-                              const parian_place *place, double u, double v, double direction[3],
-                              double E[3])
+void parian_reference_light_sample_at(const parian_reference_scene *scene, uint32_t light,
+                                      const parian_place *place, double u, double v,
+                                      double direction[3], double E[3])
 {
     const parian_light *source = parian_light_sampler_light(scene->sampler, light);
     const double *normal = place->smooth_normal;
@@ -104,7 +103,7 @@ void parian_reference_light_sample(const parian_reference_scene *scene, uint32_t
                                    double direction[3], double E[3])
 {
     double u = parian_random_unit(random), v = parian_random_unit(random);
-    sample_irradiance(scene, light, place, u, v, direction, E);
+    parian_reference_light_sample_at(scene, light, place, u, v, direction, E);
 }
 
 void parian_reference_irradiance(const parian_reference_scene *scene, uint32_t light,
@@ -121,7 +120,8 @@ void parian_reference_irradiance(const parian_reference_scene *scene, uint32_t l
     }
     for (uint32_t i = 0; i < count; i++) {
         double u = shift_u + (double)i / count, v = shift_v + golden * i;
-        sample_irradiance(scene, light, place, u - floor(u), v - floor(v), direction, one);
+        parian_reference_light_sample_at(scene, light, place, u - floor(u), v - floor(v), direction,
+                                         one);
         vec3d_add_scaled(sum, one, 1);
     }
     if (count > 0) {

@@ -59,5 +59,9 @@ void parian_reference_irradiance(const parian_reference_scene *scene, uint32_t l
 void parian_reference_light_sample(const parian_reference_scene *scene, uint32_t light,
                                    const parian_place *place, parian_random *random,
                                    double direction[3], double E[3]);
+/* The same from two uniform numbers of the caller's choice. */
+void parian_reference_light_sample_at(const parian_reference_scene *scene, uint32_t light,
+                                      const parian_place *place, double u, double v,
+                                      double direction[3], double E[3]);
 
 #endif

@@ -6,6 +6,8 @@
 #ifndef PARIAN_BAKE_QUADRATURE_PARTS_H
 #define PARIAN_BAKE_QUADRATURE_PARTS_H
 
+#include <math.h>
+
 #include "bake/reference/surface_quadrature.h"
 #include "bake/reference/surface_strata.h"
 #include "core/transport_model.h"
@@ -22,6 +24,28 @@ typedef struct quadrature_guide {
     double core2;                /* squared core length, m^2 */
     double tolerance;
 } quadrature_guide;
+
+/* Numbers for lights of extent: a lattice that covers the square evenly, shifted at random. Places
+ * that follow each other are neighbours, so that those around a receiver see every part of a light
+ * about equally often. Source  [Roberts18], the R2 sequence */
+typedef struct quadrature_lattice {
+    double shift[2];
+} quadrature_lattice;
+
+static inline quadrature_lattice quadrature_lattice_make(parian_random *random)
+{
+    double u = parian_random_unit(random), v = parian_random_unit(random);
+    return (quadrature_lattice){{u, v}};
+}
+
+static inline void quadrature_lattice_at(const quadrature_lattice *lattice, uint64_t index,
+                                         double at[2])
+{
+    at[0] = lattice->shift[0] + 0.75487766624669276005 * (double)index;
+    at[1] = lattice->shift[1] + 0.56984029099805326591 * (double)index;
+    at[0] -= floor(at[0]);
+    at[1] -= floor(at[1]);
+}
 
 /* Strata next to each other along the tree. */
 typedef struct quadrature_block {
@@ -68,6 +92,7 @@ typedef struct quadrature_job {
     const uint32_t *index; /* receivers of this body */
     size_t index_count, batch_first;
     uint64_t replicate;
+    quadrature_lattice lattice;      /* of the shared places of this replicate */
     double (*mean)[3], (*square)[3]; /* per receiver: running mean and sum of squared deviations */
     uint64_t *near_count;            /* [receivers] fresh places, all replicates */
 } quadrature_job;

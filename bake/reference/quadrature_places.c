@@ -235,15 +235,15 @@ static void add_arrival(quadrature_surface *surface, quadrature_block *block, ui
 
 /* All lights at one place; samples of a light of extent share its weight. */
 static void light_place(const quadrature_job *job, quadrature_surface *surface,
-                        quadrature_block *block, uint32_t index, const parian_place *place,
-                        parian_random *random)
+                        quadrature_block *block, uint32_t index, const parian_place *place)
 {
     double area = surface->stratum[index].area;
     for (uint32_t l = 0; l < job->scene->light_count; l++) {
         uint32_t count = parian_light_is_delta(&job->scene->lights[l]) ? 1 : EXTENT_SAMPLES;
         for (uint32_t s = 0; s < count; s++) {
-            double direction[3] = {0, 0, 0}, E[3] = {0, 0, 0};
-            parian_reference_light_sample(job->scene, l, place, random, direction, E);
+            double direction[3], E[3], at[2];
+            quadrature_lattice_at(&job->lattice, (uint64_t)index * count + s, at);
+            parian_reference_light_sample_at(job->scene, l, place, at[0], at[1], direction, E);
             if (!(E[0] > 0 || E[1] > 0 || E[2] > 0)) {
                 continue;
             }
@@ -275,11 +275,14 @@ static void light_block(void *context, size_t b)
             surface->normal[a][i] = (float)place.smooth_normal[a];
             surface->flux[a][i] = 0;
         }
-        light_place(job, surface, block, i, &place, &random);
+        light_place(job, surface, block, i, &place);
     }
 }
 
 void quadrature_light_places(quadrature_job *job)
 {
+    parian_random random = parian_random_stream(job->desc->seed ^ QUADRATURE_SALT,
+                                                2 * job->replicate, job->surface.body, UINT64_MAX);
+    job->lattice = quadrature_lattice_make(&random);
     parian_par(job->env, job->surface.block_count, light_block, job);
 }

@@ -15,6 +15,8 @@ enum { LANES = 16, STACK_MAX = 160 };
 typedef struct quadrature_receiver {
     double x[3], n[3]; /* relative to the tree's origin; smooth normal */
     float xf[3], nf[3];
+    quadrature_lattice lattice; /* for its fresh places, */
+    uint64_t fresh;             /* as many as there are so far */
 } quadrature_receiver;
 
 static quadrature_receiver take_receiver(const quadrature_job *job, size_t at)
@@ -163,18 +165,19 @@ static void add_value(const quadrature_surface *surface, const double x[3],
 
 /* One fresh place: one sample of every light, and the kernel. */
 static void add_fresh_place(const quadrature_job *job, const parian_stratum *stratum,
-                            const quadrature_receiver *receiver, parian_random *random, double B[3])
+                            quadrature_receiver *receiver, parian_random *random, double B[3])
 {
     const quadrature_surface *surface = &job->surface;
     parian_place place;
-    double sum[3] = {0, 0, 0}, x[3];
+    double sum[3] = {0, 0, 0}, x[3], at[2];
     parian_stratum_place(&surface->tree, stratum, surface->body, random, &place);
     for (int a = 0; a < 3; a++) {
         x[a] = place.position[a] - surface->tree.origin[a];
     }
+    quadrature_lattice_at(&receiver->lattice, receiver->fresh++, at);
     for (uint32_t l = 0; l < job->scene->light_count; l++) {
-        double direction[3] = {0, 0, 0}, E[3] = {0, 0, 0};
-        parian_reference_light_sample(job->scene, l, &place, random, direction, E);
+        double direction[3], E[3];
+        parian_reference_light_sample_at(job->scene, l, &place, at[0], at[1], direction, E);
         bool lit = E[0] > 0 || E[1] > 0 || E[2] > 0;
         for (int c = 0; c < 3; c++) {
             E[c] *= stratum->area;
@@ -191,13 +194,12 @@ static void add_fresh_place(const quadrature_job *job, const parian_stratum *str
 
 /* Cut a near stratum until its parts may stay whole; a fresh place in each. Returns their number.
  */
-static uint64_t refine(const quadrature_job *job, const parian_stratum *whole,
-                       const quadrature_receiver *receiver, parian_random *random, double B[3])
+static void refine(const quadrature_job *job, const parian_stratum *whole,
+                   quadrature_receiver *receiver, parian_random *random, double B[3])
 {
     const quadrature_surface *surface = &job->surface;
     parian_stratum stack[STACK_MAX];
     size_t depth = 0;
-    uint64_t count = 0;
     stack[depth++] = *whole;
     while (depth > 0) {
         parian_stratum s = stack[--depth], half[2];
@@ -210,10 +212,8 @@ static uint64_t refine(const quadrature_job *job, const parian_stratum *whole,
             stack[depth++] = half[0];
         } else if (s.area > 0) {
             add_fresh_place(job, &s, receiver, random, B);
-            count++;
         }
     }
-    return count;
 }
 
 static void near_receiver(const quadrature_job *job, size_t at, double B[3])
@@ -223,6 +223,8 @@ static void near_receiver(const quadrature_job *job, size_t at, double B[3])
     uint32_t index = job->index[at];
     parian_random random = parian_random_stream(job->desc->seed ^ QUADRATURE_SALT,
                                                 2 * job->replicate + 1, surface->body, index);
+    receiver.lattice = quadrature_lattice_make(&random);
+    receiver.fresh = 0;
     for (size_t b = 0; b < surface->block_count; b++) {
         const quadrature_block *block = &surface->block[b];
         if (!block_is_near(surface, block, receiver.x)) {
@@ -230,10 +232,11 @@ static void near_receiver(const quadrature_job *job, size_t at, double B[3])
         }
         for (uint32_t i = block->first; i < block->first + block->count; i++) {
             if (stratum_is_near(surface, i, receiver.x)) {
-                job->near_count[index] += refine(job, &surface->stratum[i], &receiver, &random, B);
+                refine(job, &surface->stratum[i], &receiver, &random, B);
             }
         }
     }
+    job->near_count[index] += receiver.fresh;
 }
 
 void quadrature_near(const quadrature_job *job, size_t from, size_t to, double (*B)[3])
