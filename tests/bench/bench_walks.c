@@ -116,6 +116,7 @@ static bool price_of_no_absorption(void)
 
 int main(int argc, char **argv)
 {
+    setvbuf(stdout, NULL, _IOLBF, 0); /* a row shows when it is done */
     uint64_t photons = 2000000;
     bool roulette = false;
     for (int i = 1; i < argc; i++) {

@@ -12,6 +12,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "bake/reference/half_space.h"
 #include "core/fresnel.h"
 #include "core/memory.h"
 #include "support/planar_oracles.h"
@@ -243,6 +244,26 @@ static void half_space_follows_ambartsumian(void **state)
         /* 100 points and 60 rounds leave 5e-6 (against 400 and 200). */
         assert_within(p.total[0], expected[k % 2], 3 * p.total_error[0] + 5e-6, "half-space");
         assert_true(p.unscattered == 0 && p.total[1] == 0);
+        drop(&p);
+    }
+}
+
+/* A second method, without noise and to 1e-4 up to |g| = 0.9: the same half-space by discrete
+ * ordinates. */
+static void half_space_agrees_with_discrete_ordinates(void **state)
+{
+    (void)state;
+    static const double cases[][3] = {
+        {0.9984376, 0, 1.5}, {0.9, 0.9, 1.3}, {0.99, -0.5, 1.4}, {0.99, 0.8, 0.7}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        double albedo = cases[k][0], g = cases[k][1], eta = cases[k][2];
+        parian_planar_desc desc = {.shape = PARIAN_HALF_SPACE,
+                                   .medium = parian_walk_medium_of(albedo, 1 - albedo, g, eta),
+                                   .photons = 60000,
+                                   .seed = 350 + k};
+        parian_planar_profile p = make(&desc);
+        assert_within(p.total[0], parian_half_space_reflectance(albedo, g, eta),
+                      3 * p.total_error[0] + 1e-4, "discrete ordinates");
         drop(&p);
     }
 }
@@ -492,6 +513,7 @@ int main(void)
         cmocka_unit_test(absorbers_follow_beer),
         cmocka_unit_test(unscattered_part_follows_beer),
         cmocka_unit_test(half_space_follows_ambartsumian),
+        cmocka_unit_test(half_space_agrees_with_discrete_ordinates),
         cmocka_unit_test(literature_is_met),
         cmocka_unit_test(white_furnace_gives_all_back),
         cmocka_unit_test(extremes_are_finite),
