@@ -87,39 +87,58 @@ static parian_result write_npy(reference_files *files, const parian_planar_table
     return r;
 }
 
-static void add_table(cJSON *parent, const parian_planar_table *table)
+/* Totals of one side, and what of them lies beyond the table. */
+static void add_side(cJSON *parent, const char *name, const parian_planar_table *table,
+                     uint32_t side)
 {
-    static const char *const side[2] = {"lit_side", "far_side"};
-    cJSON *o = cJSON_AddObjectToObject(parent, table->name);
-    double value[3], beyond[3], in[3], out[3], absorbed[3];
-    for (uint32_t s = 0; s < side_count(table); s++) {
-        char name[32];
-        cJSON *p = cJSON_AddObjectToObject(o, side[s]);
-        for (int k = 0; k < 2; k++) {
-            for (int c = 0; c < 3; c++) {
-                const parian_planar_profile *profile = &table->profile[c];
-                value[c] = k ? profile->total_error[s] : profile->total[s];
-                beyond[c] = profile->bin[s][row_count(table)];
-            }
-            snprintf(name, sizeof name, k ? "standard_error" : "total");
-            reference_add_triple(p, name, value);
-        }
-        reference_add_triple(p, "beyond_table", beyond);
-    }
+    cJSON *o = cJSON_AddObjectToObject(parent, name);
+    double total[3], error[3], beyond[3];
     for (int c = 0; c < 3; c++) {
         const parian_planar_profile *profile = &table->profile[c];
-        double started = profile->books.started;
-        value[c] = profile->unscattered;
-        beyond[c] = table->desc[c].bin_width;
-        in[c] = started > 0 ? 1 : 0;
-        out[c] = started > 0 ? profile->books.left / started : 0;
-        absorbed[c] = started > 0 ? profile->books.absorbed / started : 0;
+        total[c] = profile->total[side];
+        error[c] = profile->total_error[side];
+        beyond[c] = profile->bin[side][row_count(table)];
     }
-    reference_add_triple(o, "unscattered", value);
+    reference_add_triple(o, "total", total);
+    reference_add_triple(o, "standard_error", error);
+    reference_add_triple(o, "beyond_table", beyond);
+}
+
+/* Where the energy went, as shares: in + roulette_added = out + absorbed + roulette_removed. */
+static void add_books(cJSON *o, const parian_planar_table *table)
+{
+    double in[3], out[3], absorbed[3], added[3], removed[3];
+    for (int c = 0; c < 3; c++) {
+        const parian_walk_books *books = &table->profile[c].books;
+        double share = books->started > 0 ? 1 / books->started : 0;
+        in[c] = share * books->started;
+        out[c] = share * books->left;
+        absorbed[c] = share * books->absorbed;
+        added[c] = share * books->roulette_added;
+        removed[c] = share * books->roulette_removed;
+    }
     reference_add_triple(o, "in", in);
     reference_add_triple(o, "out", out);
     reference_add_triple(o, "absorbed", absorbed);
-    reference_add_triple(o, "bin_width_m", beyond);
+    reference_add_triple(o, "roulette_added", added);
+    reference_add_triple(o, "roulette_removed", removed);
+}
+
+static void add_table(cJSON *parent, const parian_planar_table *table)
+{
+    cJSON *o = cJSON_AddObjectToObject(parent, table->name);
+    double unscattered[3], width[3];
+    add_side(o, "lit_side", table, 0);
+    if (side_count(table) > 1) {
+        add_side(o, "far_side", table, 1);
+    }
+    for (int c = 0; c < 3; c++) {
+        unscattered[c] = table->profile[c].unscattered;
+        width[c] = table->desc[c].bin_width;
+    }
+    reference_add_triple(o, "unscattered", unscattered);
+    add_books(o, table);
+    reference_add_triple(o, "bin_width_m", width);
     cJSON_AddNumberToObject(o, "bins", row_count(table));
 }
 

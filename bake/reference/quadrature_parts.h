@@ -103,6 +103,9 @@ parian_result quadrature_surface_make(const quadrature_job *job, uint32_t body, 
                                       quadrature_surface *surface);
 void quadrature_surface_free(const parian_env *env, quadrature_surface *surface);
 
+/* Samples of all lights at a shared place. */
+uint32_t quadrature_count_arrivals(const parian_reference_scene *scene);
+
 /* Draw the shared places of the present replicate and light them. */
 void quadrature_light_places(quadrature_job *job);
 

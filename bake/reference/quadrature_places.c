@@ -158,7 +158,7 @@ static parian_result make_tables(const quadrature_job *job, const parian_referen
                : parian_transport_model_make(job->env, &box, PARIAN_MODEL_FULL, &surface->model);
 }
 
-static uint32_t count_arrivals(const parian_reference_scene *scene)
+uint32_t quadrature_count_arrivals(const parian_reference_scene *scene)
 {
     uint32_t count = 0;
     for (uint32_t l = 0; l < scene->light_count; l++) {
@@ -197,7 +197,8 @@ parian_result quadrature_surface_make(const quadrature_job *job, uint32_t body, 
                               &surface->stratum_count);
     }
     if (r == PARIAN_OK) {
-        surface->arrivals_per_place = surface->tabulated ? 0 : count_arrivals(job->scene);
+        surface->arrivals_per_place =
+            surface->tabulated ? 0 : quadrature_count_arrivals(job->scene);
         r = make_blocks(job->env, surface);
     }
     if (r != PARIAN_OK) {

@@ -24,6 +24,7 @@ enum {
     PLACES_DEFAULT = 8192, /* of a replicate */
     PLACES_MAX = 1 << 18,  /* beyond, there are more replicates */
     PLACES_MIN = 64,
+    ARRIVALS_MAX = 1 << 24, /* of a replicate: half a gigabyte */
     REPLICATES_MAX = 1 << 20,
     RECEIVERS_PER_TASK = 8,
     TASKS_PER_BATCH = 32,
@@ -35,13 +36,19 @@ typedef struct replicate_plan {
     uint64_t replicates, places;
 } replicate_plan;
 
-static replicate_plan plan_replicates(uint64_t samples)
+/* Places of a replicate are kept in memory, with every light's direction where directions count. */
+static replicate_plan plan_replicates(const quadrature_job *job)
 {
-    replicate_plan plan = {REPLICATES, samples ? samples / REPLICATES : PLACES_DEFAULT};
-    if (plan.places > PLACES_MAX) {
-        plan.replicates = samples / PLACES_MAX;
+    bool directions = job->desc->bssrdf.model == PARIAN_REFERENCE_DIRECTIONAL;
+    uint64_t samples = job->desc->samples ? job->desc->samples : REPLICATES * PLACES_DEFAULT;
+    uint64_t arrivals = quadrature_count_arrivals(job->scene);
+    uint64_t most = directions && arrivals ? ARRIVALS_MAX / arrivals : PLACES_MAX;
+    replicate_plan plan = {REPLICATES, samples / REPLICATES};
+    most = most < PLACES_MAX ? most : PLACES_MAX;
+    if (plan.places > most) {
+        plan.places = most;
+        plan.replicates = samples / most;
         plan.replicates = plan.replicates < REPLICATES_MAX ? plan.replicates : REPLICATES_MAX;
-        plan.places = PLACES_MAX;
     }
     plan.places = plan.places > PLACES_MIN ? plan.places : PLACES_MIN;
     return plan;
@@ -207,7 +214,7 @@ static parian_result check(const parian_env *env, const parian_reference_scene *
 
 static parian_result compute(quadrature_job *job, parian_reference_result *result)
 {
-    replicate_plan plan = plan_replicates(job->desc->samples);
+    replicate_plan plan = plan_replicates(job);
     irradiance_job light = {job->scene, job->receivers, job->desc->seed, result->irradiance};
     job->mean = result->radiosity;
     job->square = result->standard_error;
