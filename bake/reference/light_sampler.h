@@ -21,7 +21,8 @@ typedef struct parian_light_sample {
                            * shadow; for lights of extent divided by the density of the sample */
 } parian_light_sample;
 
-/* lights [count] are copied, pictures are not. Errors: PARIAN_E_NOMEM. */
+/* lights [count] are copied, pictures are not. Errors: PARIAN_E_ARGUMENT (which
+ * light, and what is wrong with it), PARIAN_E_NOMEM. */
 parian_result parian_light_sampler_create(const parian_env *env, const parian_light *lights,
                                           uint32_t count, parian_light_sampler **sampler);
 void parian_light_sampler_destroy(parian_light_sampler *sampler);
