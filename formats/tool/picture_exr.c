@@ -20,6 +20,7 @@ typedef struct exr_job {
     int32_t top; /* of the data window */
     float (*rgb)[3];
     bool dwa; /* compressed in a way that OpenEXRCore does not know */
+    bool no_memory; /* while writing */
     char message[200];
 } exr_job;
 
@@ -33,6 +34,14 @@ static void on_error(exr_const_context_t context, exr_result_t code, const char 
             strncpy(job->message, message, sizeof job->message - 1);
         }
     }
+}
+
+/* A context that writes is locked while it calls back: asking it for our job would wait forever. */
+static void ignore_error(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    (void)context;
+    (void)code;
+    (void)message;
 }
 
 static int64_t read_bytes(exr_const_context_t context, void *user, void *buffer, uint64_t size,
@@ -60,8 +69,10 @@ static int64_t write_bytes(exr_const_context_t context, void *user, const void *
                            uint64_t size, uint64_t offset, exr_stream_error_func_ptr_t error)
 {
     exr_job *job = user;
+    (void)context;
+    (void)error;
     if (!parian_byte_stream_put(&job->stream, offset, buffer, size)) {
-        error(context, EXR_ERR_OUT_OF_MEMORY, "no memory");
+        job->no_memory = true;
         return -1;
     }
     return (int64_t)size;
@@ -152,6 +163,7 @@ parian_result parian_exr_write(const parian_env *env, const char *path, uint32_t
     exr_job job = {.stream.env = env, .path = path, .width = width, .height = height};
     exr_context_initializer_t init = make_initializer(&job);
     init.write_fn = write_bytes;
+    init.error_handler_fn = ignore_error;
     if (parian_picture_check_size(env, path, width, height) != PARIAN_OK) {
         return PARIAN_E_ARGUMENT;
     }
@@ -162,6 +174,7 @@ parian_result parian_exr_write(const parian_env *env, const char *path, uint32_t
         exr_result_t finished = exr_finish(&job.context);
         code = code == EXR_ERR_SUCCESS ? finished : code;
     }
+    code = job.no_memory ? EXR_ERR_OUT_OF_MEMORY : code;
     parian_result result = code == EXR_ERR_SUCCESS
                                ? parian_file_write(env, path, job.stream.data, job.stream.size)
                                : fail_exr(&job, PARIAN_E_COMPUTE, code);
