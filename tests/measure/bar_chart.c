@@ -64,11 +64,12 @@ static void fit_axis(bars *b)
             largest = takes ? fmax(largest, v) : largest;
         }
     }
-    if (b->chart->logarithmic) {
-        largest *= pow(largest / smallest, 0.05); /* room for the number behind the longest bar */
-    } else {
+    if (!b->chart->logarithmic) {
         smallest = fmin(smallest, 0);
-        largest += 0.04 * (largest - smallest);
+    }
+    if (b->drawn > 0) { /* room for the number behind the longest bar */
+        largest = b->chart->logarithmic ? largest * pow(largest / smallest, 0.05)
+                                        : largest + 0.04 * (largest - smallest);
     }
     b->axis = parian_chart_axis_fit(b->chart->logarithmic, smallest, largest, true);
     if (b->left_out) {
