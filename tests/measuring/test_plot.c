@@ -31,7 +31,8 @@ static const char HOSTILE[] = "it's \"bad\" `touch pwned` $(id) \\ \n \x01 \xff\
 static uint8_t *read_file(const char *folder, const char *name, const char *suffix, size_t *size)
 {
     char path[1200];
-    uint8_t *data;
+    static uint8_t
+        *data; /* not on the stack: GCC 12 would warn of a pointer to it, which nobody keeps */
     snprintf(path, sizeof path, "%s/%s%s", folder, name, suffix);
     assert_int_equal(parian_file_read(NULL, path, FILE_MAX, &data, size), PARIAN_OK);
     assert_true(*size > 0);
