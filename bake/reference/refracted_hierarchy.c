@@ -6,14 +6,14 @@
 
 #include "core/memory.h"
 
-enum { LEAF = 2 };
+enum { LEAF = 1 };
 
 /* Coordinates beyond this are taken as not finite: their squares must not overflow. */
 static const double COORDINATE_MAX = 1e100;
 
 /* Normals next to places in the order of the tree: facets that differ by one radian are held as far
  * apart as ones this many mean facet sizes away. */
-static const double NORMAL_WEIGHT = 4;
+static const double NORMAL_WEIGHT = 12;
 
 static bool make_facet(const parian_mesh *mesh, uint32_t t, parian_refracting_facet *facet)
 {

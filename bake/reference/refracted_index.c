@@ -7,6 +7,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
+#include "bake/reference/refracted_four.h"
 #include "bake/reference/refracted_hierarchy.h"
 #include "core/memory.h"
 
@@ -250,29 +251,16 @@ typedef struct prism_query {
     float at[3], reach, pad; /* x in the frame; tolerances, in units of the mesh's radius */
 } prism_query;
 
-static inline float smaller(float a, float b)
+static inline unsigned test_children(const prism_query *q, const prism_node *node)
 {
-    return a < b ? a : b;
-}
-
-static inline float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
-static inline void test_children(const prism_query *q, const prism_node *node,
-                                 int32_t pass[PARIAN_TREE_WIDTH])
-{
-    for (int c = 0; c < PARIAN_TREE_WIDTH; c++) {
-        float depth = node->base[c] - q->at[2];
-        int met = (depth <= q->reach) & (q->at[2] <= node->top[c] + q->pad);
-        for (int k = 0; k < 2; k++) {
-            float a = depth * node->least[k][c], b = depth * node->greatest[k][c];
-            met &= (node->lower[k][c] + smaller(a, b) - q->pad <= q->at[k]) &
-                   (q->at[k] <= node->upper[k][c] + larger(a, b) + q->pad);
-        }
-        pass[c] = met;
+    four depth = four_load(node->base) - q->at[2];
+    four_mask met = (depth <= q->reach) & (q->at[2] <= four_load(node->top) + q->pad);
+    for (int k = 0; k < 2; k++) {
+        four a = depth * four_load(node->least[k]), b = depth * four_load(node->greatest[k]);
+        met &= (four_load(node->lower[k]) + four_smaller(a, b) - q->pad <= q->at[k]) &
+               (q->at[k] <= four_load(node->upper[k]) + four_larger(a, b) + q->pad);
     }
+    return four_bits(met);
 }
 
 static bool prepare_query(prism_query *q)
@@ -305,14 +293,12 @@ void parian_refractor_index_paths_counted(const parian_refractor_index *index, c
         uint32_t first = stack[--size].first, count = stack[size].count;
         if (count == PARIAN_TREE_INNER) {
             const prism_node *node = &index->node[first];
-            int32_t pass[PARIAN_TREE_WIDTH];
             cost->nodes++;
-            test_children(&q, node, pass);
-            for (int k = PARIAN_TREE_WIDTH - 1; k >= 0; k--) {
-                if (pass[k]) {
-                    stack[size].first = node->children.first[k];
-                    stack[size++].count = node->children.count[k];
-                }
+            unsigned pass = test_children(&q, node);
+            while (pass) { /* the first child comes out first */
+                int k = four_last(&pass);
+                stack[size].first = node->children.first[k];
+                stack[size++].count = node->children.count[k];
             }
             continue;
         }

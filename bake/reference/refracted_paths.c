@@ -12,6 +12,7 @@
  */
 #include "bake/reference/refracted_paths.h"
 
+#include "bake/reference/refracted_four.h"
 #include "bake/reference/refracted_hierarchy.h"
 
 /* Points of light farther than this, in radii of the mesh, are searched as directions with a width.
@@ -29,119 +30,122 @@ typedef struct search {
     float inverse, inverse2, excess;
 } search;
 
+/* The four children of a node. */
 typedef struct child_bounds {
-    float centre[3], half[3], axis[3], spread;
+    four centre[3], half[3], axis[3], spread, radius;
 } child_bounds;
 
-static inline float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
-static inline float smaller(float a, float b)
-{
-    return a < b ? a : b;
-}
-
-static inline float dot(const float a[3], const float b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Direction of light at the middle of the box, and by how much it differs over the box (10 where
+/* Direction of light at the middle of the boxes; returns by how much it differs over them (10 where
  * anything goes). asin(s) <= s + (pi / 2 - 1) s^3 on [0, 1], since every term of its series is
  * positive. */
-static inline float light_over_box(const search *s, const child_bounds *c, bool near_by,
-                                   float light[3])
+static inline four light_over_boxes(const search *s, const child_bounds *c, bool near_by,
+                                    four light[3])
 {
     if (!near_by) {
-        light[0] = s->light[0];
-        light[1] = s->light[1];
-        light[2] = s->light[2];
-        return s->width;
+        for (int k = 0; k < 3; k++) {
+            light[k] = four_of(s->light[k]);
+        }
+        return four_of(s->width);
     }
-    float to[3] = {s->light[0] - c->centre[0], s->light[1] - c->centre[1],
-                   s->light[2] - c->centre[2]};
-    float scale = 1 / sqrtf(larger(dot(to, to), 1e-20f));
-    float sine = sqrtf(dot(c->half, c->half)) * scale;
-    light[0] = to[0] * scale;
-    light[1] = to[1] * scale;
-    light[2] = to[2] * scale;
-    return sine < 1 ? 1.0001f * (sine + 0.5708f * sine * sine * sine) + 1e-6f : 10;
-}
-
-/* Half angle of the cone of refracted directions, where normals differ by up to spread from their
- * axis, and light by up to width. cos_least is a lower bound of cos_i over both, 0 where some of
- * the normals face away. */
-static inline float cone_of_refraction(const search *s, bool denser, float spread, float width,
-                                       float cos_least)
-{
-    float cos2_t = (s->excess + cos_least * cos_least) * s->inverse2;
-    if (denser) {
-        float K = 1 - cos_least * s->inverse / (sqrtf(larger(cos2_t, 0)) + 1e-20f);
-        return K * spread + width * (cos_least > 0 ? s->inverse : 1 + K);
-    }
-    float K = cos_least * s->inverse / sqrtf(larger(cos2_t, 1e-3f)) - 1;
-    return cos2_t > 1e-3f ? K * spread + (1 + K) * width : 10;
-}
-
-/* Whether the segment from x along q, as long as may be, meets the box grown by the width of the
- * cone. Separating axes of box and segment. d: from x to the middle of the box. */
-static inline int cone_meets_box(const search *s, const child_bounds *c, const float d[3],
-                                 const float q[3], float cone)
-{
-    float gap[3], h[3], m[3], a[3];
-    float reach = smaller(s->reach, sqrtf(dot(d, d)) + sqrtf(dot(c->half, c->half)) + s->pad);
-    float grown = cone * reach + s->pad, middle = 0.5f * reach;
+    four to[3];
     for (int k = 0; k < 3; k++) {
-        gap[k] = larger(fabsf(d[k]) - c->half[k], 0);
+        to[k] = s->light[k] - c->centre[k];
+    }
+    four scale = 1 / four_sqrt(four_larger(four_dot(to, to), four_of(1e-20f)));
+    four sine = c->radius * scale;
+    for (int k = 0; k < 3; k++) {
+        light[k] = to[k] * scale;
+    }
+    four angle = 1.0001f * (sine + 0.5708f * sine * sine * sine) + 1e-6f;
+    return four_where(sine < 1, angle, four_of(10));
+}
+
+/* Half angle of the cones of refracted directions, where normals differ by up to spread from their
+ * axis, and light by up to width. cos_first and cos_least are lower bounds of cos_i once the light,
+ * and then the normal, has turned, 0 where some of the normals face away. K rises with incidence,
+ * and is convex: its mean over the normal's turn is at most that of its ends, or K at the end where
+ * the turn goes beyond the horizon. */
+static inline four cones_of_refraction(const search *s, bool denser, four spread, four width,
+                                       four cos_first, four cos_least)
+{
+    four cos2_t = (s->excess + cos_least * cos_least) * s->inverse2;
+    four cos2_first = (s->excess + cos_first * cos_first) * s->inverse2;
+    four least2 = four_of(denser ? 1e-30f : 1e-3f);
+    four m = cos_least * s->inverse / four_sqrt(four_larger(cos2_t, least2));
+    four m_first = cos_first * s->inverse / four_sqrt(four_larger(cos2_first, least2));
+    if (denser) {
+        four_mask whole = cos_least > 0;
+        four K = four_where(whole, 1 - 0.5f * (m + m_first), four_of(1));
+        K = s->excess > 0 ? K : four_of(0); /* light goes straight on */
+        return K * spread + four_where(whole, four_of(s->inverse), four_of(2)) * width;
+    }
+    four cone = (0.5f * (m + m_first) - 1) * spread + m * width;
+    return four_where(cos2_t > 1e-3f, cone, four_of(10));
+}
+
+/* Whether the segments from x along q, as long as may be, meet the boxes grown by the width of the
+ * cones: separating axes of box and segment. d: from x to the middle of the box. */
+static inline four_mask cones_meet_boxes(const search *s, const child_bounds *c, const four d[3],
+                                         const four q[3], four cone)
+{
+    four gap[3], h[3], m[3], a[3], limit = four_of(s->reach + s->pad);
+    four reach = four_smaller(four_of(s->reach), four_sqrt(four_dot(d, d)) + c->radius + s->pad);
+    four grown = cone * reach + s->pad, middle = 0.5f * reach;
+    for (int k = 0; k < 3; k++) {
+        gap[k] = four_larger(four_abs(d[k]) - c->half[k], four_of(0));
         h[k] = c->half[k] + grown;
         m[k] = d[k] - q[k] * middle;
-        a[k] = fabsf(q[k]);
+        a[k] = four_abs(q[k]);
     }
-    float limit = s->reach + s->pad;
-    return (dot(gap, gap) <= limit * limit) & (fabsf(m[0]) <= h[0] + a[0] * middle) &
-           (fabsf(m[1]) <= h[1] + a[1] * middle) & (fabsf(m[2]) <= h[2] + a[2] * middle) &
-           (fabsf(m[1] * q[2] - m[2] * q[1]) <= h[1] * a[2] + h[2] * a[1]) &
-           (fabsf(m[2] * q[0] - m[0] * q[2]) <= h[2] * a[0] + h[0] * a[2]) &
-           (fabsf(m[0] * q[1] - m[1] * q[0]) <= h[0] * a[1] + h[1] * a[0]);
+    four_mask meets = four_dot(gap, gap) <= limit * limit;
+    for (int k = 0; k < 3; k++) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        meets &= four_abs(m[k]) <= h[k] + a[k] * middle;
+        meets &= four_abs(m[i] * q[j] - m[j] * q[i]) <= h[i] * a[j] + h[j] * a[i];
+    }
+    return meets;
 }
 
-/* Whether a child may hold a facet that carries a path; false only where none can. Free of
- * branches, so that four children are tested at once. */
-static inline int may_carry(const search *s, const child_bounds *c, bool near_by, bool denser)
+/* Which children may hold a facet that carries a path; a lane is clear only where none can. */
+static inline four_mask may_carry(const search *s, const child_bounds *c, bool near_by, bool denser)
 {
-    float light[3], q[3], d[3];
-    float width = light_over_box(s, c, near_by, light), turn = c->spread + width;
-    float cos_a = dot(c->axis, light), sin_a = sqrtf(larger(1 - cos_a * cos_a, 1e-12f));
-    float cos_i = larger(cos_a, 0),
-          cos_t = sqrtf(larger((s->excess + cos_i * cos_i) * s->inverse2, 0));
+    four light[3], q[3], d[3], zero = four_of(0);
+    four width = light_over_boxes(s, c, near_by, light), turn = c->spread + width;
+    four cos_a = four_dot(c->axis, light);
+    four sin_a = four_sqrt(four_larger(1 - cos_a * cos_a, four_of(1e-12f)));
+    four cos_i = four_larger(cos_a, zero);
+    four cos_t = four_sqrt(four_larger((s->excess + cos_i * cos_i) * s->inverse2, zero));
     /* an axis that faces away is replaced by the nearest normal that does not */
-    float below = smaller(cos_a, 0), scale = cos_a < 0 ? 1 / sin_a : 1,
-          along = cos_t - cos_i * s->inverse;
+    four below = four_smaller(cos_a, zero);
+    four along = (cos_t - cos_i * s->inverse) * four_where(cos_a < 0, 1 / sin_a, four_of(1));
     for (int k = 0; k < 3; k++) {
-        q[k] = light[k] * s->inverse + along * scale * (c->axis[k] - below * light[k]);
+        q[k] = light[k] * s->inverse + along * (c->axis[k] - below * light[k]);
         d[k] = c->centre[k] - s->x[k];
     }
-    float cos_least = larger(cos_i * (1 - 0.5f * turn * turn) - sin_a * turn - 5e-4f, 0);
-    float cone = 1.001f * cone_of_refraction(s, denser, c->spread, width, cos_least) + 1e-5f;
-    float cos_most = cos_i + sin_a * turn;
-    int crosses = denser | (turn > 1) | (cos_most * cos_most >= -0.999f * s->excess - 1e-5f);
-    return crosses & (cos_a >= -turn) & cone_meets_box(s, c, d, q, cone);
+    four cos_least = four_larger(cos_i * (1 - 0.5f * turn * turn) - sin_a * turn - 5e-4f, zero);
+    four cos_first = four_larger(cos_i * (1 - 0.5f * width * width) - sin_a * width - 5e-4f, zero);
+    four cone = cones_of_refraction(s, denser, c->spread, width, cos_first, cos_least);
+    cone = 1.001f * cone + 1e-5f;
+    four_mask met = (cos_a >= -turn) & cones_meet_boxes(s, c, d, q, cone);
+    if (!denser) { /* all may be reflected totally */
+        four cos_most = cos_i + sin_a * turn;
+        met &= (turn > 1) | (cos_most * cos_most >= -0.999f * s->excess - 1e-5f);
+    }
+    return met;
 }
 
-static inline void test_children(const search *s, const parian_refractor_node *node, bool near_by,
-                                 bool denser, int32_t pass[PARIAN_TREE_WIDTH])
+static inline unsigned test_children(const search *s, const parian_refractor_node *node,
+                                     bool near_by, bool denser)
 {
-    for (int k = 0; k < PARIAN_TREE_WIDTH; k++) {
-        child_bounds c = {
-            .centre = {node->centre[0][k], node->centre[1][k], node->centre[2][k]},
-            .half = {node->half[0][k], node->half[1][k], node->half[2][k]},
-            .axis = {node->axis[0][k], node->axis[1][k], node->axis[2][k]},
-            .spread = node->spread[k],
-        };
-        pass[k] = may_carry(s, &c, near_by, denser);
+    child_bounds c;
+    for (int k = 0; k < 3; k++) {
+        c.centre[k] = four_load(node->centre[k]);
+        c.half[k] = four_load(node->half[k]);
+        c.axis[k] = four_load(node->axis[k]);
     }
+    c.spread = four_load(node->spread);
+    c.radius = four_sqrt(four_dot(c.half, c.half));
+    return four_bits(may_carry(s, &c, near_by, denser));
 }
 
 /* What is asked, in metres. */
@@ -188,14 +192,12 @@ static inline void visit(const query *q, const search *s, bool near_by, bool den
             continue;
         }
         const parian_refractor_node *node = &q->refractor->node[first];
-        int32_t pass[PARIAN_TREE_WIDTH];
         q->cost->nodes++;
-        test_children(s, node, near_by, denser, pass);
-        for (int k = PARIAN_TREE_WIDTH - 1; k >= 0; k--) {
-            if (pass[k]) {
-                stack[size].first = node->children.first[k];
-                stack[size++].count = node->children.count[k];
-            }
+        unsigned pass = test_children(s, node, near_by, denser);
+        while (pass) { /* the first child comes out first */
+            int k = four_last(&pass);
+            stack[size].first = node->children.first[k];
+            stack[size++].count = node->children.count[k];
         }
     }
 }
