@@ -72,7 +72,7 @@ static inline unsigned four_bits(four_mask mask)
 #endif
 }
 
-/* Take the highest bit of bits, of which there is one. */
+/* Take away the highest bit of bits (not 0): its place. */
 static inline int four_last(unsigned *bits)
 {
     int k = 31 - __builtin_clz(*bits);

@@ -239,9 +239,7 @@ void parian_refractor_index_destroy(parian_refractor_index *index)
     }
 }
 
-/* ---- query
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- query ---- */
 
 typedef struct prism_query {
     const parian_refractor_index *index;
