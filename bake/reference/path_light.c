@@ -69,7 +69,7 @@ typedef struct connection {
     const path_scene *path;
     const path_walker *walker;
     const parian_path_medium *medium;
-    uint32_t light, skip;
+    uint32_t light;
     double rate; /* of the random radius; 0 where it has no end */
     bool leaves; /* at a receiver: the flux through it instead of the phase function */
     double sum;
@@ -120,8 +120,22 @@ static void add_connection(void *context, const parian_refracted_path *found)
     }
 }
 
-/* Rate of the search radius: a share of the extinction that no path falls below. */
-static double connection_rate(const parian_path_medium *medium)
+/* Every connection of one light not longer than radius. */
+static void search(const path_body *body, uint32_t light, double radius, uint32_t skip,
+                   connection *c)
+{
+    const path_light *of = &c->path->light[light];
+    c->light = light;
+    if (of->index && radius <= body->index_length) {
+        parian_refractor_index_paths(of->index[c->walker->body], c->walker->position, radius, skip,
+                                     add_connection, c);
+    } else {
+        parian_refracted_paths(body->refractor, c->walker->position, &of->point, radius, skip,
+                               add_connection, c);
+    }
+}
+
+double parian_path_connection_rate(const parian_path_medium *medium)
 {
     return CONNECTION_RATE * (medium->field ? medium->minorant : medium->walk.sigma_t);
 }
@@ -133,16 +147,14 @@ double parian_path_connect(const path_scene *path, int channel, const path_walke
     connection c = {.path = path,
                     .walker = walker,
                     .medium = &body->medium[channel],
-                    .rate = connection_rate(&body->medium[channel])};
+                    .rate = parian_path_connection_rate(&body->medium[channel])};
     double radius = parian_walk_flight(c.rate, random);
     if (radius < parian_path_grid_distance(&body->grid, walker->position)) {
         return 0;
     }
     for (uint32_t l = 0; l < path->scene->light_count; l++) {
         if (path->light[l].meeting == PATH_BY_CONNECTION) {
-            c.light = l;
-            parian_refracted_paths(body->refractor, walker->position, &path->light[l].point, radius,
-                                   PARIAN_RAY_NONE, add_connection, &c);
+            search(body, l, radius, PARIAN_REFRACTOR_NO_SKIP, &c);
         }
     }
     return c.sum;
@@ -159,9 +171,7 @@ double parian_path_straight(const path_scene *path, int channel, size_t receiver
     double radius = c.medium->minorant > 0 ? 60 / c.medium->minorant : INFINITY;
     for (uint32_t l = 0; l < path->scene->light_count; l++) {
         if (path->light[l].meeting == PATH_BY_CONNECTION) {
-            c.light = l;
-            parian_refracted_paths(body->refractor, at.position, &path->light[l].point, radius,
-                                   at.triangle, add_connection, &c);
+            search(body, l, radius, at.triangle, &c);
         }
     }
     return c.sum;

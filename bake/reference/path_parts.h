@@ -31,6 +31,8 @@ typedef enum path_meeting {
 typedef struct path_light {
     path_meeting meeting;
     parian_light_point point; /* of lights without extent */
+    parian_refractor_index *
+        *index;         /* [bodies] of light from infinity met by connection, else NULL */
     double *cumulative; /* [triangle_total + 1] chance of a photon to start below a triangle; NULL:
                            gives none */
 } path_light;
@@ -40,6 +42,7 @@ typedef struct path_body {
     parian_path_medium medium[3];
     parian_path_grid grid;
     parian_refractor *refractor; /* NULL where no light is met by connection */
+    double index_length;         /* longest path that the lights' indices find */
     uint32_t first_triangle;     /* of the body in the list of all */
     double extent;
 } path_body;
@@ -92,6 +95,8 @@ double parian_path_exit_light(const path_scene *path, int channel, const path_wa
  * phase * fluence, sr^-1 W m^-2; an unbiased estimate whose search radius is random. */
 double parian_path_connect(const path_scene *path, int channel, const path_walker *walker,
                            parian_random *random);
+/* Rate of that radius, m^-1: a share of the extinction that no path falls below. */
+double parian_path_connection_rate(const parian_path_medium *medium);
 /* What comes straight to a receiver: flux that leaves there, W m^-2; exact. */
 double parian_path_straight(const path_scene *path, int channel, size_t receiver);
 /* Irradiance in one channel on a plane at x perpendicular to the light, where the light is visible

@@ -10,7 +10,8 @@
 
 enum {
     SLICE = 768,          /* receivers times channels whose walks are one step */
-    PASSES_MAX = 1024,    /* of photons in a round */
+    PASSES_MAX = 1024,    /* of photons in a round on the way to a wanted error */
+    PASSES_FEW = 8,       /* the same where the count of walks was given */
     BOOK_PHOTONS = 100000 /* per channel: enough for totals to 0.3 % */
 };
 static const double CHECKPOINT_SECONDS = 20;
@@ -241,6 +242,7 @@ static double relative_error(const path_run *run)
 /* Double the photons of a round while they are what errs most. */
 static void plan_passes(path_run *run)
 {
+    uint64_t most = run->desc->standard_error > 0 ? PASSES_MAX : PASSES_FEW;
     double sum[2] = {0};
     for (size_t i = 0; i < run->state.count * 3; i++) {
         double walks, photons;
@@ -249,7 +251,7 @@ static void plan_passes(path_run *run)
         sum[1] += photons;
     }
     if (run->any_walk && run->path->any_forward && sum[1] > PHOTON_VARIANCE_SHARE * sum[0] &&
-        run->state.now.passes < PASSES_MAX) {
+        run->state.now.passes < most) {
         run->state.now.passes *= 2;
     }
 }

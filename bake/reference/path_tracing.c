@@ -14,7 +14,9 @@
 #include "tool/session.h"
 
 enum {
-    GRID_RESOLUTION = 192,
+    GRID_LEAST = 8, /* voxels along a body */
+    GRID_MOST = 192,
+    GRID_PER_FLIGHT = 4, /* voxels per mean free path */
     SAMPLES_DEFAULT = 1024,
     IRRADIANCE_SAMPLES = 256 /* for E of a light of extent */
 };
@@ -86,6 +88,25 @@ static void set_light_point(const path_scene *path, uint32_t l)
     }
 }
 
+/* Indices by the direction of a light from infinity, one for each body. */
+static parian_result prepare_indices(path_scene *path, path_light *light)
+{
+    parian_result r = PARIAN_OK;
+    if (light->meeting != PATH_BY_CONNECTION || !light->point.at_infinity) {
+        return r;
+    }
+    if (!PARIAN_NEW0(path->env, light->index, path->scene->body_count)) {
+        return parian_fail(path->env, PARIAN_E_NOMEM, "no memory for %u bodies",
+                           path->scene->body_count);
+    }
+    for (uint32_t b = 0; b < path->scene->body_count && r == PARIAN_OK; b++) {
+        r = parian_refractor_prepare_direction(path->env, path->body[b].refractor,
+                                               light->point.direction, path->body[b].index_length,
+                                               &light->index[b]);
+    }
+    return r;
+}
+
 static parian_result prepare_lights(path_scene *path, parian_walk_kind walk)
 {
     parian_result r = PARIAN_OK;
@@ -103,8 +124,30 @@ static parian_result prepare_lights(path_scene *path, parian_walk_kind walk)
         path->any_connection |= path->light[l].meeting == PATH_BY_CONNECTION;
         path->any_forward |= path->light[l].meeting != PATH_BY_EXIT;
         r = parian_path_entries_make(path, l);
+        r = r == PARIAN_OK ? prepare_indices(path, &path->light[l]) : r;
     }
     return r;
+}
+
+/* Twelve mean radii of the search in the clearest channel, or twice the body where that is less. */
+static void set_index_length(path_body *body)
+{
+    double rate = INFINITY;
+    for (int c = 0; c < 3; c++) {
+        rate = fmin(rate, parian_path_connection_rate(&body->medium[c]));
+    }
+    double whole = body->extent > 0 ? 2 * body->extent : 1;
+    body->index_length = rate * whole > 12 ? 12 / rate : whole;
+}
+
+/* Voxels as fine as the flights that they are to save rays of. */
+static uint32_t grid_resolution(const path_body *body)
+{
+    double extinction = 0;
+    for (int c = 0; c < 3; c++) {
+        extinction = fmax(extinction, body->medium[c].majorant);
+    }
+    return (uint32_t)fmin(fmax(GRID_PER_FLIGHT * extinction * body->extent, GRID_LEAST), GRID_MOST);
 }
 
 static parian_result prepare_body(path_scene *path, uint32_t b)
@@ -117,10 +160,11 @@ static parian_result prepare_body(path_scene *path, uint32_t b)
         body->extent = fmax(body->extent, upper[k] - lower[k]);
         body->medium[k] = parian_path_medium_make(body->source, k);
     }
+    set_index_length(body);
     body->first_triangle = path->triangle_total;
     path->triangle_total += body->source->mesh.triangle_count;
     parian_result r =
-        parian_path_grid_make(path->env, &body->source->mesh, GRID_RESOLUTION, &body->grid);
+        parian_path_grid_make(path->env, &body->source->mesh, grid_resolution(body), &body->grid);
     if (r == PARIAN_OK && path->any_connection) {
         r = parian_refractor_create(path->env, &body->source->mesh, body->source->medium.eta,
                                     &body->refractor);
@@ -201,7 +245,12 @@ static void unprepare(path_scene *path)
         parian_refractor_destroy(path->body[b].refractor);
     }
     for (uint32_t l = 0; path->light && l < path->scene->light_count; l++) {
-        parian_free(path->env, path->light[l].cumulative);
+        path_light *light = &path->light[l];
+        for (uint32_t b = 0; light->index && b < path->scene->body_count; b++) {
+            parian_refractor_index_destroy(light->index[b]);
+        }
+        parian_free(path->env, light->index);
+        parian_free(path->env, light->cumulative);
     }
     parian_path_patches_free(path);
     parian_free(path->env, path->body);
