@@ -12,173 +12,90 @@
 #include "tests/measure/results_table.h"
 #include "tool/files.h"
 
-/* Coefficients are in units of 1 / size, so that the numbers say how many mean free paths a body is
- * wide. The plain medium is that of marble at 20 mm, a little fewer mean free paths wide. */
-#define PLAIN_S                                                                                    \
-    {                                                                                              \
-        40, 50, 60                                                                                 \
-    }
-#define PLAIN_A                                                                                    \
-    {                                                                                              \
-        0.05, 0.1, 0.2                                                                             \
-    }
-#define SOUND   .error_max = 0.03, .energy_max = 0.01, .minimum = -0.001
+/* clang-format off */
+/* Coefficients are in units of 1 / size, so that the numbers say how many mean free paths a body is wide. The plain
+ * medium is that of marble at 20 mm. */
+#define PLAIN {40, 50, 60}, {0.05, 0.1, 0.2}
+#define BALL PARIAN_SHAPE_SPHERE, 0.02
+#define SOUND .error_max = 0.03, .energy_max = 0.01, .minimum = -0.001
 #define PHYSICS .truth = PARIAN_HARD_PATH, .error_max = 0.15, .energy_max = 0.05, .minimum = -0.001
 
 static const char AS_SOUND[] = "as a sound sphere at this setting";
+static const char REDUCED[] = "transport by reduced coefficients: as with g = 0";
+static const char UNITS[] = "the same body in other units";
+static const char SHEET[] =
+    "three quarters of the light cross half a mean free path, most of it unscattered; by distance alone the two sides "
+    "of a wide sheet give 1.53 of what enters";
+static const char CREASE[] = "distance takes a short cut through air";
+static const char EDGE[] = "near an edge half of the flux leaves by the other face";
+static const char CONSERVED[] =
+    "what enters a body that does not absorb leaves it; by distance alone what would go past the far side is lost";
+static const char CROSSING[] =
+    "light crosses unscattered, which no diffuse BSSRDF holds";
+static const char SIMILAR[] =
+    "similarity keeps totals to 2 % at this albedo; the rest is the dipole's, on a radius of 5 to 7 mean free paths";
 
 const parian_hard_case parian_hard_case_table[] = {
-    {"sound-sphere", PARIAN_SHAPE_SPHERE, 0.02, PLAIN_S, PLAIN_A, 0, 1.5, SOUND,
-     .reason = "nothing is hard: what the others are held against"},
-    {"absorption-zero",
-     PARIAN_SHAPE_SPHERE,
-     0.02,
-     PLAIN_S,
-     {0, 0, 0},
-     0,
-     1.5,
-     SOUND,
-     .reason = AS_SOUND},
-    {"absorption-zero-path",
-     PARIAN_SHAPE_SPHERE,
-     0.02,
-     PLAIN_S,
-     {0, 0, 0},
-     0,
-     1.5,
-     PARIAN_HARD_SKY,
-     PHYSICS,
-     .reason = "what enters a body that does not absorb leaves it; by distance alone the dipole "
-               "loses what it sends "
-               "past the far side"},
-    {"albedo-one",
-     PARIAN_SHAPE_SPHERE,
-     0.02,
-     {400, 500, 600},
-     {0.04, 0.05, 0.06},
-     0,
-     1.5,
-     SOUND,
-     .reason = AS_SOUND},
-    {"eta-one", PARIAN_SHAPE_SPHERE, 0.02, PLAIN_S, PLAIN_A, 0, 1, SOUND, .reason = AS_SOUND},
-    {"eta-one-path", PARIAN_SHAPE_SPHERE, 0.02, PLAIN_S, PLAIN_A, 0, 1, PARIAN_HARD_SUN, PHYSICS,
-     .reason = "no boundary: A = 1"},
-    {"eta-below-one", PARIAN_SHAPE_SPHERE, 0.02, PLAIN_S, PLAIN_A, 0, 0.7, PARIAN_HARD_SKY,
-     PARIAN_HARD_REFUSED, 0.3, 0.3, -0.001,
-     "the bake refuses it in one line; quadrature and path tracing stay finite and near each "
-     "other, by what "
-     "the dipole loses on a sphere of 20 mean free paths across (29 % in the method notes)"},
-    {"eta-2.5", PARIAN_SHAPE_SPHERE, 0.02, PLAIN_S, PLAIN_A, 0, 2.5, SOUND, .reason = AS_SOUND},
-    {"g-0.95", PARIAN_SHAPE_SPHERE, 0.02, PLAIN_S, PLAIN_A, 0.95, 1.5, SOUND,
-     .reason = "transport by reduced coefficients: as with g = 0"},
-    {"g-0.995", PARIAN_SHAPE_SPHERE, 0.02, PLAIN_S, PLAIN_A, 0.995, 1.5, SOUND,
-     .reason = "transport by reduced coefficients: as with g = 0"},
-    {"g-minus-0.5", PARIAN_SHAPE_SPHERE, 0.02, PLAIN_S, PLAIN_A, -0.5, 1.5, SOUND,
-     .reason = "transport by reduced coefficients: as with g = 0"},
-    {"g-0.95-path", PARIAN_SHAPE_SPHERE, 0.02, PLAIN_S, PLAIN_A, 0.95, 1.5, PARIAN_HARD_SUN,
-     PHYSICS,
-     .reason = "similarity keeps totals to 0.2 % at this albedo; the rest is the dipole's"},
-    {"g-minus-0.5-path", PARIAN_SHAPE_SPHERE, 0.02, PLAIN_S, PLAIN_A, -0.5, 1.5, PARIAN_HARD_SUN,
-     PHYSICS, .reason = "similarity keeps totals to 2 % at this albedo; the rest is the dipole's"},
-    {"strong-absorption",
-     PARIAN_SHAPE_SPHERE,
-     0.02,
-     {40, 40, 40},
-     {40, 160, 640},
-     0,
-     1.5,
-     SOUND,
-     .reason = "R_d falls by 200 orders of magnitude over the body: half floats with a scale of "
-               "each row hold it"},
-    {"one-channel-dark",
-     PARIAN_SHAPE_SPHERE,
-     0.02,
-     {40, 40, 0},
-     {0.1, 0.1, 40},
-     0,
-     1.5,
-     SOUND,
+    {"sound-sphere", BALL, PLAIN, 0, 1.5, SOUND, .reason = "nothing is hard: what the others are held against"},
+    {"absorption-zero", BALL, {40, 50, 60}, {0, 0, 0}, 0, 1.5, SOUND, .reason = AS_SOUND},
+    {"absorption-zero-path", BALL, {40, 50, 60}, {0, 0, 0}, 0, 1.5, PARIAN_HARD_SKY, PHYSICS, .reason = CONSERVED},
+    {"absorption-zero-flux-path", BALL, {40, 50, 60}, {0, 0, 0}, 0, 1.5, PARIAN_HARD_SKY, PHYSICS,
+     .flux = true, .reason = CONSERVED},
+    {"albedo-one", BALL, {400, 500, 600}, {0.04, 0.05, 0.06}, 0, 1.5, SOUND, .reason = AS_SOUND},
+    {"eta-one", BALL, PLAIN, 0, 1, SOUND, .reason = AS_SOUND},
+    {"eta-one-path", BALL, PLAIN, 0, 1, PHYSICS, .reason = "no boundary: A = 1"},
+    {"eta-below-one", BALL, PLAIN, 0, 0.7, PARIAN_HARD_SKY, PARIAN_HARD_REFUSED, .error_max = 0.3, .energy_max = 0.3,
+     .minimum = -0.001,
+     .reason = "the bake refuses it in one line; quadrature and path tracing stay finite, and no farther apart than "
+               "the dipole is from truth on a sphere of 20 mean free paths (29 % was measured)"},
+    {"eta-2.5", BALL, PLAIN, 0, 2.5, SOUND, .reason = AS_SOUND},
+    {"g-0.95", BALL, PLAIN, 0.95, 1.5, SOUND, .reason = REDUCED},
+    {"g-0.995", BALL, PLAIN, 0.995, 1.5, SOUND, .reason = REDUCED},
+    {"g-minus-0.5", BALL, PLAIN, -0.5, 1.5, SOUND, .reason = REDUCED},
+    {"g-0.95-path", BALL, {10, 12, 14}, {0.01, 0.02, 0.04}, 0.95, 1.5, PARIAN_HARD_SKY, PHYSICS, .reason = SIMILAR},
+    {"g-0.95-flux-path", BALL, {10, 12, 14}, {0.01, 0.02, 0.04}, 0.95, 1.5, PARIAN_HARD_SKY, PHYSICS,
+     .flux = true, .reason = SIMILAR},
+    {"g-minus-0.5-path", BALL, {10, 12, 14}, {0.01, 0.02, 0.04}, -0.5, 1.5, PARIAN_HARD_SKY, PHYSICS,
+     .reason = SIMILAR},
+    {"strong-absorption", BALL, {40, 40, 40}, {40, 160, 640}, 0, 1.5, SOUND,
+     .reason = "R_d falls by 200 orders of magnitude over the body: half floats with a scale of each row hold it"},
+    {"one-channel-dark", BALL, {40, 40, 0}, {0.1, 0.1, 40}, 0, 1.5, SOUND,
      .reason = "a channel that does not scatter gives B = 0"},
-    {"path-below-texel",
-     PARIAN_SHAPE_SPHERE,
-     0.02,
-     {4e5, 5e5, 6e5},
-     {400, 500, 600},
-     0,
-     1.5,
-     PARIAN_HARD_SUN,
-     PARIAN_HARD_LAMBERT,
-     0.03,
-     0.01,
-     -0.001,
-     "a mean free path of 1/500 texel: Lambert's law with the albedo of the half-space"},
-    {"path-above-object",
-     PARIAN_SHAPE_SPHERE,
-     0.02,
-     {0.05, 0.1, 0.2},
-     {0.0005, 0.001, 0.002},
-     0,
-     1.5,
-     SOUND,
-     .reason = AS_SOUND},
-    {"path-above-object-path",
-     PARIAN_SHAPE_SPHERE,
-     0.02,
-     {0.05, 0.1, 0.2},
-     {0.0005, 0.001, 0.002},
-     0,
-     1.5,
-     PARIAN_HARD_SKY,
-     PHYSICS,
-     .reason = "light crosses unscattered, which no diffuse BSSRDF holds (methods note 9: never by "
-               "distance alone)"},
-    {"thin-sheet",
-     PARIAN_SHAPE_SHEET,
-     0.02,
-     {12, 16, 20},
-     {0.02, 0.04, 0.08},
-     0,
-     1.5,
-     SOUND,
+    {"path-below-texel", BALL, {4e5, 5e5, 6e5}, {400, 500, 600}, 0, 1.5, PARIAN_HARD_SUN, PARIAN_HARD_LAMBERT,
+     .error_max = 0.03, .energy_max = 0.01, .minimum = -0.001,
+     .reason = "a mean free path below 1/2000 texel: Lambert's law with the albedo of the half-space"},
+    {"path-above-object", BALL, {0.05, 0.1, 0.2}, {0.0005, 0.001, 0.002}, 0, 1.5, SOUND, .reason = AS_SOUND},
+    {"path-above-object-path", BALL, {0.05, 0.1, 0.2}, {0.0005, 0.001, 0.002}, 0, 1.5, PARIAN_HARD_SKY, PHYSICS,
+     .reason = CROSSING},
+    {"path-above-object-flux-path", BALL, {0.05, 0.1, 0.2}, {0.0005, 0.001, 0.002}, 0, 1.5, PARIAN_HARD_SKY, PHYSICS,
+     .flux = true, .reason = CROSSING},
+    {"thin-sheet", PARIAN_SHAPE_SHEET, 0.02, {12, 16, 20}, {0.02, 0.04, 0.08}, 0, 1.5, SOUND,
      .reason = "a sheet of 0.3 to 0.5 mean free paths: as a sound sphere"},
-    {"thin-sheet-path",
-     PARIAN_SHAPE_SHEET,
-     0.02,
-     {12, 16, 20},
-     {0.02, 0.04, 0.08},
-     0,
-     1.5,
-     PARIAN_HARD_SKY,
-     PHYSICS,
-     .reason = "reflected and transmitted parts sum to at most 1; by distance alone to 1.53 "
-               "(method notes 3.3)"},
-    {"sharp-edge", PARIAN_SHAPE_BOX, 0.02, PLAIN_S, PLAIN_A, 0, 1.5, SOUND, .reason = AS_SOUND},
-    {"sharp-edge-path", PARIAN_SHAPE_BOX, 0.02, PLAIN_S, PLAIN_A, 0, 1.5, PARIAN_HARD_SKY, PHYSICS,
-     .reason = "near an edge half of the flux leaves by the other face (method notes 9)"},
-    {"concave-crease", PARIAN_SHAPE_CREASE, 0.02, PLAIN_S, PLAIN_A, 0, 1.5, SOUND,
-     .reason = AS_SOUND},
-    {"concave-crease-path", PARIAN_SHAPE_CREASE, 0.02, PLAIN_S, PLAIN_A, 0, 1.5, PARIAN_HARD_SUN,
-     PHYSICS, .reason = "distance takes a short cut through air"},
-    {"zero-area-triangles", PARIAN_SHAPE_ZERO_AREA, 0.02, PLAIN_S, PLAIN_A, 0, 1.5, SOUND,
-     .reason = AS_SOUND},
-    {"uneven-triangles", PARIAN_SHAPE_UNEVEN_SPHERE, 0.02, PLAIN_S, PLAIN_A, 0, 1.5, SOUND,
-     .reason = AS_SOUND},
-    {"open-mesh", PARIAN_SHAPE_BOWL, 0.02, PLAIN_S, PLAIN_A, 0, 1.5, PARIAN_HARD_SKY,
-     .error_max = 0.05, .energy_max = 0.03, .minimum = -0.001,
-     .reason = "a surface without inside: as a sound sphere, and 2 % for what light does within "
-               "the bowl"},
-    {"non-manifold", PARIAN_SHAPE_TOUCHING, 0.02, PLAIN_S, PLAIN_A, 0, 1.5, SOUND,
+    {"thin-sheet-path", PARIAN_SHAPE_SHEET, 0.02, {12, 16, 20}, {0.02, 0.04, 0.08}, 0, 1.5, PHYSICS, .reason = SHEET},
+    {"thin-sheet-flux-path", PARIAN_SHAPE_SHEET, 0.02, {12, 16, 20}, {0.02, 0.04, 0.08}, 0, 1.5, PHYSICS,
+     .flux = true, .reason = SHEET},
+    {"sharp-edge", PARIAN_SHAPE_BOX, 0.02, PLAIN, 0, 1.5, SOUND, .reason = AS_SOUND},
+    {"sharp-edge-path", PARIAN_SHAPE_BOX, 0.02, PLAIN, 0, 1.5, PARIAN_HARD_SKY, PHYSICS, .reason = EDGE},
+    {"sharp-edge-flux-path", PARIAN_SHAPE_BOX, 0.02, PLAIN, 0, 1.5, PARIAN_HARD_SKY, PHYSICS,
+     .flux = true, .reason = EDGE},
+    {"concave-crease", PARIAN_SHAPE_CREASE, 0.02, PLAIN, 0, 1.5, SOUND, .reason = AS_SOUND},
+    {"concave-crease-path", PARIAN_SHAPE_CREASE, 0.02, PLAIN, 0, 1.5, PHYSICS, .reason = CREASE},
+    {"concave-crease-flux-path", PARIAN_SHAPE_CREASE, 0.02, PLAIN, 0, 1.5, PHYSICS, .flux = true, .reason = CREASE},
+    {"zero-area-triangles", PARIAN_SHAPE_ZERO_AREA, 0.02, PLAIN, 0, 1.5, SOUND, .reason = AS_SOUND},
+    {"uneven-triangles", PARIAN_SHAPE_UNEVEN_SPHERE, 0.02, PLAIN, 0, 1.5, SOUND, .reason = AS_SOUND},
+    {"open-mesh", PARIAN_SHAPE_BOWL, 0.02, PLAIN, 0, 1.5, PARIAN_HARD_SKY, .error_max = 0.05, .energy_max = 0.03,
+     .minimum = -0.001,
+     .reason = "a surface without inside: as a sound sphere, and 2 % for what its rim does to normals"},
+    {"non-manifold", PARIAN_SHAPE_TOUCHING, 0.02, PLAIN, 0, 1.5, SOUND,
      .reason = "four triangles at an edge are parted: as a sound sphere"},
-    {"scale-0.1mm", PARIAN_SHAPE_SPHERE, 0.0001, PLAIN_S, PLAIN_A, 0, 1.5, SOUND,
-     .reason = "the same body in other units"},
-    {"scale-10m", PARIAN_SHAPE_SPHERE, 10, PLAIN_S, PLAIN_A, 0, 1.5, SOUND,
-     .reason = "the same body in other units"},
-    {"small-spot", PARIAN_SHAPE_SPHERE, 0.02, PLAIN_S, PLAIN_A, 0, 1.5, PARIAN_HARD_SPOT,
-     PARIAN_HARD_QUADRATURE, 0.1, 0.05, -0.001,
-     "a spot of two vertices' distance: no ringing, nothing below zero; its rim costs accuracy"},
-    {"no-light", PARIAN_SHAPE_SPHERE, 0.02, PLAIN_S, PLAIN_A, 0, 1.5, PARIAN_HARD_NIGHT,
-     PARIAN_HARD_QUADRATURE, 0, 0, 0, "B = 0 everywhere, and no 0 / 0"},
+    {"scale-0.1mm", PARIAN_SHAPE_SPHERE, 0.0001, PLAIN, 0, 1.5, SOUND, .reason = UNITS},
+    {"scale-10m", PARIAN_SHAPE_SPHERE, 10, PLAIN, 0, 1.5, SOUND, .reason = UNITS},
+    {"small-spot", BALL, PLAIN, 0, 1.5, PARIAN_HARD_SPOT, .error_max = 0.1, .energy_max = 0.05, .minimum = -0.001,
+     .reason = "a spot of a few vertices' distance: no ringing, nothing below zero; its rim costs accuracy"},
+    {"no-light", BALL, PLAIN, 0, 1.5, PARIAN_HARD_NIGHT, .error_max = 0, .energy_max = 0, .minimum = 0,
+     .reason = "B = 0 everywhere, and no 0 / 0"},
 };
+/* clang-format on */
 const size_t parian_hard_case_count =
     sizeof parian_hard_case_table / sizeof parian_hard_case_table[0];
 
@@ -257,11 +174,11 @@ static void add_csv_line(const parian_env *env, const parian_hard_case *c,
 static void print_line(const parian_hard_case *c, const parian_hard_outcome *o)
 {
     if (o->measured) {
-        printf("%-24s %-6s %8.4f %8.2f %8.2f  %-12s %6.1f  %s\n", c->name, o->finite ? "yes" : "no",
+        printf("%-28s %-6s %8.4f %8.2f %8.2f  %-12s %6.1f  %s\n", c->name, o->finite ? "yes" : "no",
                o->energy_ratio, 100 * o->error, 100 * o->standard_error, truth_name(c), o->seconds,
                o->pass ? "pass" : "SHORT");
     } else {
-        printf("%-24s %-6s %8s %8s %8s  %-12s %6.1f  %s\n", c->name, o->finite ? "yes" : "no", "-",
+        printf("%-28s %-6s %8s %8s %8s  %-12s %6.1f  %s\n", c->name, o->finite ? "yes" : "no", "-",
                "-", "-", truth_name(c), o->seconds, o->pass ? "pass" : "SHORT");
     }
     if (!o->measured) {
@@ -345,7 +262,7 @@ static parian_result run_cases(const parian_env *env, const char *models, const 
                                hard_results *results)
 {
     parian_result r = PARIAN_OK;
-    printf("%-24s %-6s %8s %8s %8s  %-12s %6s  %s\n", "case", "finite", "energy", "error %",
+    printf("%-28s %-6s %8s %8s %8s  %-12s %6s  %s\n", "case", "finite", "energy", "error %",
            "s.e. %", "truth", "s", "verdict");
     for (size_t i = 0; r == PARIAN_OK && i < parian_hard_case_count; i++) {
         const parian_hard_case *c = &parian_hard_case_table[i];

@@ -52,7 +52,9 @@ typedef struct parian_hard_case {
     parian_hard_truth truth;
     double error_max, energy_max; /* of L2, and of |energy ratio - 1| */
     double minimum;               /* smallest B over the mean of the truth that is allowed */
-    const char *reason;           /* why these numbers */
+    bool flux; /* the dipole with the true gradient at the receiver, in the bake and the quadrature
+                */
+    const char *reason; /* why these numbers */
 } parian_hard_case;
 
 extern const parian_hard_case parian_hard_case_table[];

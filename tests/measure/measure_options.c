@@ -74,10 +74,10 @@ static parian_result parse_table(int argc, char **argv, parian_measure_options *
         {"--standard-error", NULL, PARIAN_OPTION_NUMBER, &o->standard_error, "E",
          "path: stop when the standard error is below this share of the mean of B (0.02).", 1e-6, 1,
          NULL, NULL},
-        {.name = "--normalise",
-         .kind = PARIAN_OPTION_FLAG,
-         .value = &o->normalise,
-         .help = "directional, pbd: scaled to the energy of radiative transfer."},
+        {"--normalise", NULL, PARIAN_OPTION_CHOICE, &o->normalise, "WHETHER",
+         "directional, pbd: scale each channel to the total that radiative transfer gives a "
+         "half-space (on).",
+         0, 0, "on|off", NULL},
         {"--receivers", NULL, PARIAN_OPTION_COUNT, &o->receivers, "N",
          "Texels at which truth is taken (1000).", 1, RECEIVERS_MAX, NULL, NULL},
         {"--map-receivers", NULL, PARIAN_OPTION_COUNT, &o->map_receivers, "N",
@@ -95,6 +95,9 @@ static parian_result parse_table(int argc, char **argv, parian_measure_options *
          "Side of maps and pictures, pixels (512).", 16, 8192, NULL, NULL},
         {"--cache", NULL, PARIAN_OPTION_STRING, &o->cache, "DIR",
          "Folder of bakes and truths (cache in the -o folder).", 0, 0, NULL, NULL},
+        {"--relight-seconds", NULL, PARIAN_OPTION_NUMBER, &o->relight_seconds, "S",
+         "Relights are timed for so long, at least 5 and at most 100 of them (5).", 0, 3600, NULL,
+         NULL},
         {"--seed", NULL, PARIAN_OPTION_COUNT, &o->seed, "N", "Seed of receivers and truth (0).", 0,
          4294967295.0, NULL, NULL},
     };
@@ -183,6 +186,7 @@ parian_result parian_measure_options_parse(int argc, char **argv, parian_measure
     const parian_env env = {.log = print_mistake};
     o->receivers = RECEIVERS_DEFAULT;
     o->picture_size = PICTURE_DEFAULT;
+    o->relight_seconds = 5;
     o->methods_text = "transfer";
     parian_result r = parse_table(argc, argv, o);
     if (r != PARIAN_OK || o->common.help || o->common.version) {

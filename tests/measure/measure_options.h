@@ -32,9 +32,10 @@ typedef struct parian_measure_options {
     size_t method_count;
     int backend;   /* parian_measure_backend */
     int reference; /* parian_reference_model, where reference_given */
-    bool reference_given, normalise, images;
+    bool reference_given, images;
+    int normalise;    /* of "on|off" */
     uint32_t samples; /* 0: what the model takes by default */
-    double standard_error;
+    double standard_error, relight_seconds;
     uint32_t receivers, map_receivers, picture_size, seed;
     const char *camera;
     char cache_default[PARIAN_MEASURE_PATH_MAX];

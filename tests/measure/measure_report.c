@@ -39,6 +39,7 @@ static void add_channels(cJSON *object, const parian_measure_row *row)
         add_number(o, "minimum", e->minimum);
         add_number(o, "truth_standard_error", e->truth_error);
         add_number(o, "irradiance_l2", row[c].irradiance_l2);
+        add_number(o, "transport_l2", row[c].transport_l2);
         cJSON_AddNumberToObject(o, "not_finite", (double)e->not_finite);
         cJSON_AddItemToArray(list, o);
     }
@@ -171,17 +172,18 @@ static parian_result write_json(const parian_env *env, parian_measure_run *run,
 static void describe_run(const parian_measure_run *run, const parian_machine *machine,
                          parian_text *text)
 {
-    parian_text_add(text,
-                    "# Speed against error\n\n    %s\n\n%s, %u cores, %.0f GiB; %s; relit on %s. "
-                    "Errors are of B "
-                    "against the truth, the worst channel's: area-weighted relative L1 and L2, "
-                    "ratio of energies, "
-                    "99.9th percentile and smallest value over the mean of the truth. Times are "
-                    "medians of whole "
-                    "relights.\n",
-                    run->command, machine->processor, machine->cores,
-                    (double)machine->memory_bytes / (1024.0 * 1024 * 1024), machine->system,
-                    run->renderer);
+    parian_text_add(
+        text,
+        "# Speed against error\n\n    %s\n\n%s, %u cores, %.0f GiB; %s; relit on %s. "
+        "Errors are of B "
+        "against the truth, the worst channel's: area-weighted relative L1 and L2, "
+        "ratio of energies, "
+        "99.9th percentile and smallest value over the mean of the truth; E: L2 of the irradiance; "
+        "own E: L2 of B against exact transport of the irradiance that the method found. Times are "
+        "medians of whole "
+        "relights.\n",
+        run->command, machine->processor, machine->cores,
+        (double)machine->memory_bytes / (1024.0 * 1024 * 1024), machine->system, run->renderer);
 }
 
 static parian_result write_text(parian_measure_run *run, const char *name, parian_text *text)
@@ -241,18 +243,35 @@ typedef struct plot_room {
     size_t series_count;
 } plot_room;
 
-/* One line for each model, light set and truth, its points by cost; points without a cost are left
- * out. */
+/* Whether two measurements are points of one line of a plot. */
+static bool same_line(const parian_results *results, size_t a, size_t b)
+{
+    return parian_measurements_comparable(results, a, b) &&
+           strcmp(results->row[3 * a].method, results->row[3 * b].method) == 0;
+}
+
+static bool begins_line(const parian_results *results, size_t index)
+{
+    for (size_t i = 0; i < index; i++) {
+        if (same_line(results, i, index)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* One line for each model, light set, truth and method, its points by cost; points without a cost
+ * are left out. */
 static void fill_series(const parian_results *results, plot_cost cost, plot_room *room)
 {
     size_t used = 0, count = parian_measurement_count(results);
     room->series_count = 0;
     for (size_t i = 0; i < count; i++) {
         size_t first = used;
-        for (size_t k = i; parian_measurement_leads(results, i) && k < count; k++) {
+        for (size_t k = i; begins_line(results, i) && k < count; k++) {
             parian_measurement m = parian_measurement_at(results, k);
             double x = cost_of(m.row, cost);
-            if (parian_measurements_comparable(results, i, k) && isfinite(x) && isfinite(m.l2)) {
+            if (same_line(results, i, k) && isfinite(x) && isfinite(m.l2)) {
                 room->point[used++] =
                     (parian_plot_point){x, 100 * m.l2, *m.row->bake ? m.row->bake : m.row->method};
             }
@@ -260,8 +279,8 @@ static void fill_series(const parian_results *results, plot_cost cost, plot_room
         if (used > first) {
             const parian_measure_row *row = parian_measurement_at(results, i).row;
             size_t s = room->series_count++;
-            snprintf(room->name[s], sizeof room->name[s], "%.200s, %.150s (%s)", row->model,
-                     row->lights, row->reference);
+            snprintf(room->name[s], sizeof room->name[s], "%.200s, %.100s, %.100s (%s)", row->model,
+                     row->lights, row->method, row->reference);
             qsort(room->point + first, used - first, sizeof *room->point, by_cost);
             room->series[s] =
                 (parian_plot_series){room->name[s], room->point + first, used - first};
@@ -285,15 +304,13 @@ static parian_result write_plot(const parian_env *env, parian_measure_run *run, 
                               .log_y = true,
                               .series = room->series,
                               .series_count = room->series_count};
-    parian_env quiet = *env;
-    quiet.log = NULL;
-    parian_result r = parian_plot_write(&quiet, run->options->output, names[cost], &plot);
+    parian_result r = parian_plot_write(env, run->options->output, names[cost], &plot);
     if (r == PARIAN_E_UNSUPPORTED) {
         parian_log(env, PARIAN_LOG_WARNING,
                    "%s: there is no gnuplot to draw it; script and data are written", names[cost]);
         return PARIAN_OK;
     }
-    return r == PARIAN_OK ? r : parian_fail(env, r, "%s: the plot cannot be written", names[cost]);
+    return r;
 }
 
 static parian_result write_plots(const parian_env *env, parian_measure_run *run)

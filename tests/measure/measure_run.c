@@ -12,6 +12,7 @@
 
 #include "bake/reference/reference_scene.h"
 #include "core/memory.h"
+#include "tests/measure/transport_truth.h"
 #include "tool/files.h"
 
 bool parian_measure_path(const parian_measure_run *run, const char *name,
@@ -68,16 +69,18 @@ static parian_result read_lights(const parian_env *env, parian_measure_run *run)
 
 /* ---- one measurement
  * ----------------------------------------------------------------------------------------- */
-/* Errors of B and of E at the chosen texels, as doubles. */
+/* B and E of a method at the chosen texels. */
 typedef struct method_values {
     double (*radiosity)[3], (*irradiance)[3];
+    double (*transported)[3]; /* what exact transport makes of the method's own E */
 } method_values;
 
 static parian_result gather(const parian_env *env, const parian_relit *relit,
                             const parian_texel_choice *choice, method_values *values)
 {
     if (!PARIAN_NEW(env, values->radiosity, choice->count) ||
-        !PARIAN_NEW(env, values->irradiance, choice->count)) {
+        !PARIAN_NEW(env, values->irradiance, choice->count) ||
+        !PARIAN_NEW(env, values->transported, choice->count)) {
         return parian_fail(env, PARIAN_E_NOMEM, "no memory for %zu receivers", choice->count);
     }
     for (size_t i = 0; i < choice->count; i++) {
@@ -86,7 +89,9 @@ static parian_result gather(const parian_env *env, const parian_relit *relit,
             values->irradiance[i][c] = relit->irradiance[choice->texel[i]][c];
         }
     }
-    return PARIAN_OK;
+    return parian_transport_truth(env, parian_relit_bodies(relit), relit->info.body_count,
+                                  (const float(*)[3])relit->irradiance, choice,
+                                  values->transported);
 }
 
 static void copy_text(char out[PARIAN_RESULT_TEXT_MAX], const char *text)
@@ -133,6 +138,11 @@ static parian_result add_rows(const parian_env *env, parian_measure_run *run,
                                          (const double(*)[3])truth->irradiance, NULL, area, &e);
             row.irradiance_l2 = e.l2;
         }
+        if (r == PARIAN_OK) {
+            r = parian_radiosity_measure(env, count, c, (const double(*)[3])values->radiosity,
+                                         (const double(*)[3])values->transported, NULL, area, &e);
+            row.transport_l2 = e.l2;
+        }
         r = r == PARIAN_OK ? parian_results_add(env, &run->results, &row) : r;
     }
     return r;
@@ -149,7 +159,8 @@ static parian_result measure_method(const parian_env *env, parian_measure_run *r
     method_values values = {0};
     parian_relight_times times;
     parian_measure_row row;
-    parian_result r = parian_relit_time(env, c->relit, set->light, set->count, &times);
+    parian_result r = parian_relit_time(env, c->relit, set->light, set->count,
+                                        run->options->relight_seconds, &times);
     r = r == PARIAN_OK ? parian_relit_light(c->relit, set->light, set->count) : r;
     r = r == PARIAN_OK ? gather(env, c->relit, choice, &values) : r;
     if (r == PARIAN_OK) {
@@ -161,6 +172,7 @@ static parian_result measure_method(const parian_env *env, parian_measure_run *r
     }
     parian_free(env, values.radiosity);
     parian_free(env, values.irradiance);
+    parian_free(env, values.transported);
     return r;
 }
 
@@ -196,7 +208,7 @@ static void describe_truth(const parian_measure_options *o, const parian_relit *
     const parian_body *body = &parian_relit_bodies(relit)[0];
     *truth = (parian_truth_desc){.model = (parian_reference_model)o->reference,
                                  .fit_fdr = body->fit_fdr,
-                                 .normalise = o->normalise,
+                                 .normalise = o->normalise == 0,
                                  .samples = o->samples,
                                  .standard_error = o->standard_error,
                                  .seed = o->seed,

@@ -13,7 +13,6 @@
 #include "tool/session.h"
 
 enum { REPEATS_MIN = 5, REPEATS_MAX = 100 };
-static const double SECONDS_MAX = 5;
 
 /* ---- the device
  * --------------------------------------------------------------------------------------------- */
@@ -56,7 +55,8 @@ void parian_measure_device_close(const parian_env *env, parian_measure_device *d
  * ------------------------------------------------------------------------------------------ */
 static parian_result make_renderer(const parian_env *env, parian_relit *relit)
 {
-    parian_renderer_desc desc = {.backend = PARIAN_BACKEND_CPU};
+    parian_renderer_desc desc = {.backend = PARIAN_BACKEND_CPU,
+                                 .shadow_size = relit->device->shadow_size};
     if (relit->device->headless) {
         desc.backend = PARIAN_BACKEND_GL;
         desc.get_proc_address = parian_headless_proc_address;
@@ -174,7 +174,7 @@ static parian_result relight_once(parian_relit *relit, const parian_light *light
 
 /* Fill times->... from repeats; with passes, those of every pass instead of the whole. */
 static parian_result repeat(const parian_env *env, parian_relit *relit, const parian_light *lights,
-                            size_t count, parian_light *moved, bool passes,
+                            size_t count, parian_light *moved, bool passes, double seconds,
                             parian_relight_times *times)
 {
     double whole[REPEATS_MAX], part[PARIAN_PASS_MAX][REPEATS_MAX], ms;
@@ -182,7 +182,7 @@ static parian_result repeat(const parian_env *env, parian_relit *relit, const pa
     parian_result r = relight_once(relit, lights, count, &ms);
     uint32_t n = 0;
     size_t pass_count = 0;
-    double begin = parian_seconds(), limit = passes ? SECONDS_MAX / 5 : SECONDS_MAX;
+    double begin = parian_seconds(), limit = passes ? seconds / 5 : seconds;
     while (r == PARIAN_OK && n < REPEATS_MAX &&
            (n < REPEATS_MIN || parian_seconds() - begin < limit)) {
         move_lights(lights, count, n, moved);
@@ -212,7 +212,7 @@ static parian_result repeat(const parian_env *env, parian_relit *relit, const pa
 }
 
 parian_result parian_relit_time(const parian_env *env, parian_relit *relit,
-                                const parian_light *lights, size_t count,
+                                const parian_light *lights, size_t count, double seconds,
                                 parian_relight_times *times)
 {
     parian_light *moved = NULL;
@@ -221,10 +221,10 @@ parian_result parian_relit_time(const parian_env *env, parian_relit *relit,
         return parian_fail(env, PARIAN_E_NOMEM, "no memory for %zu lights", count);
     }
     parian_renderer_set_timing(relit->renderer, false);
-    parian_result r = repeat(env, relit, lights, count, moved, false, times);
+    parian_result r = repeat(env, relit, lights, count, moved, false, seconds, times);
     if (r == PARIAN_OK) {
         parian_renderer_set_timing(relit->renderer, true);
-        r = repeat(env, relit, lights, count, moved, true, times);
+        r = repeat(env, relit, lights, count, moved, true, seconds, times);
         parian_renderer_set_timing(relit->renderer, false);
     }
     parian_free(env, moved);

@@ -16,6 +16,7 @@ typedef struct parian_measure_device {
     parian_measure_backend backend; /* what it became */
     parian_headless *headless;      /* NULL: the C evaluation */
     void (*finish)(void);           /* glFinish, or NULL */
+    uint32_t shadow_size;           /* side of shadow maps; 0: the renderer's default */
 } parian_measure_device;
 
 /* Make a context; where there is none, warns and takes the C evaluation. */
@@ -58,10 +59,10 @@ typedef struct parian_relight_times {
 } parian_relight_times;
 
 /* Time whole relights under lights that differ a little each time: lights set until the work is
- * finished, after one that is not timed; what five seconds allow, at least 5 and at most 100. The
+ * finished, after one that is not timed; what `seconds` allow, at least 5 and at most 100. The
  * renderer is left with the last ones. */
 parian_result parian_relit_time(const parian_env *env, parian_relit *relit,
-                                const parian_light *lights, size_t count,
+                                const parian_light *lights, size_t count, double seconds,
                                 parian_relight_times *times);
 
 /* Draw the bodies as they are lit into [size * size][4] linear radiance. */

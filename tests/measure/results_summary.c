@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NAME_WIDTH = 34, CELL = 64 };
+enum { NAME_WIDTH = 26, CELL = 64 };
 
 /* Three digits, and no exponent above a second. */
 static void format_ms(double ms, char text[CELL])
@@ -52,15 +52,18 @@ static void add_line(const parian_measurement *m, int markdown, parian_text *tex
         snprintf(seconds, sizeof seconds, "%.1f", row->bake_s);
     }
     if (markdown) {
-        parian_text_add(text, "| `%s` | %s | %.2f | %.2f | %.4f | %.2f | %.3f | %s | %.2f | %s |\n",
-                        name, row->backend, 100 * m->l1, 100 * m->l2, m->energy_ratio,
-                        100 * m->p999, m->minimum, ms, (double)row->asset_bytes * 1e-6, seconds);
+        parian_text_add(
+            text,
+            "| `%s` | %s | %.2f | %.2f | %.2f | %.2f | %.4f | %.2f | %.3f | %s | %.2f | %s |\n",
+            name, row->backend, 100 * m->l1, 100 * m->l2, 100 * m->irradiance_l2,
+            100 * m->transport_l2, m->energy_ratio, 100 * m->p999, m->minimum, ms,
+            (double)row->asset_bytes * 1e-6, seconds);
         return;
     }
     add_name(name, text);
-    parian_text_add(text, " %6.2f %6.2f %7.4f %7.2f %6.3f %9s %7.2f %7s\n", 100 * m->l1,
-                    100 * m->l2, m->energy_ratio, 100 * m->p999, m->minimum, ms,
-                    (double)row->asset_bytes * 1e-6, seconds);
+    parian_text_add(text, " %6.2f %6.2f %6.2f %6.2f %7.4f %7.2f %6.3f %8s %7.2f %6s\n", 100 * m->l1,
+                    100 * m->l2, 100 * m->irradiance_l2, 100 * m->transport_l2, m->energy_ratio,
+                    100 * m->p999, m->minimum, ms, (double)row->asset_bytes * 1e-6, seconds);
     if (m->not_finite > 0) {
         parian_text_add(text, "  %zu values of B are not finite, and left out\n", m->not_finite);
     }
@@ -69,12 +72,15 @@ static void add_line(const parian_measurement *m, int markdown, parian_text *tex
 static void add_names(int markdown, parian_text *text)
 {
     if (markdown) {
-        parian_text_add(text, "| method, bake | backend | L1 %% | L2 %% | energy | p99.9 %% | "
-                              "least | relight ms | MB | "
-                              "bake s |\n|---|---|---|---|---|---|---|---|---|---|\n");
+        parian_text_add(
+            text,
+            "| method, bake | backend | L1 %% | L2 %% | E %% | own E %% | energy | p99.9 %% | "
+            "least | relight ms | MB | "
+            "bake s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     } else {
-        parian_text_add(text, "%-*s %6s %6s %7s %7s %6s %9s %7s %7s\n", NAME_WIDTH, "method, bake",
-                        "L1 %", "L2 %", "energy", "p99.9%", "least", "ms", "MB", "bake s");
+        parian_text_add(text, "%-*s %6s %6s %6s %6s %7s %7s %6s %8s %7s %6s\n", NAME_WIDTH,
+                        "method, bake", "L1 %", "L2 %", "E %", "own E%", "energy", "p99.9%",
+                        "least", "ms", "MB", "bake s");
     }
 }
 

@@ -158,6 +158,7 @@ static void add_row(parian_text *text, const parian_measure_row *row)
     add_count(text, row->receivers);
     add_number(text, row->error.truth_error);
     add_number(text, row->irradiance_l2);
+    add_number(text, row->transport_l2);
     add_count(text, row->error.not_finite);
     parian_text_add(text, "\n");
 }
@@ -167,7 +168,7 @@ void parian_results_csv(const parian_results *results, parian_text *text)
     parian_text_add(
         text, "asset,method,lights,reference,channel,l1,l2,energy_ratio,p999,minimum,relight_ms,"
               "asset_bytes,bake_s,model,bake,backend,vertices,texels,factors,receivers,"
-              "truth_standard_error,irradiance_l2,not_finite\n");
+              "truth_standard_error,irradiance_l2,transport_l2,not_finite\n");
     for (size_t i = 0; i < results->count; i++) {
         add_row(text, &results->row[i]);
     }
@@ -195,6 +196,8 @@ parian_measurement parian_measurement_at(const parian_results *results, size_t i
         m.l2 = worse(e->l2, m.l2);
         m.p999 = worse(e->p999, m.p999);
         m.truth_error = worse(e->truth_error, m.truth_error);
+        m.irradiance_l2 = worse(row[c].irradiance_l2, m.irradiance_l2);
+        m.transport_l2 = worse(row[c].transport_l2, m.transport_l2);
         m.minimum = fmin(m.minimum, e->minimum);
         m.not_finite += e->not_finite;
         if (!(fabs(e->energy_ratio - 1) <= fabs(m.energy_ratio - 1))) {

@@ -20,7 +20,8 @@ typedef struct parian_measure_row {
     char reference[64], backend[64];
     int channel; /* 0 to 2 */
     parian_radiosity_metrics error;
-    double irradiance_l2;      /* of E against the truth's E */
+    double irradiance_l2; /* of E against the truth's E */
+    double transport_l2;  /* of B against exact transport of the method's own E, on the asset */
     double relight_ms, bake_s; /* NaN where not known */
     uint64_t asset_bytes, vertices, texels, factors, receivers;
 } parian_measure_row;
@@ -60,7 +61,7 @@ extern const char *const parian_channel_names[3];
 typedef struct parian_measurement {
     const parian_measure_row *row;              /* the first channel's */
     double l1, l2, p999, minimum, energy_ratio; /* energy_ratio: the one farthest from 1 */
-    double truth_error;
+    double truth_error, irradiance_l2, transport_l2;
     size_t not_finite;
 } parian_measurement;
 size_t parian_measurement_count(const parian_results *results);

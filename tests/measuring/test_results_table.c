@@ -61,7 +61,7 @@ static void test_csv(void **state)
             quoted ^= *c == '"';
             fields += *c == ',' && !quoted;
         }
-        assert_int_equal(fields, 23);
+        assert_int_equal(fields, 24);
     }
     assert_int_equal(lines, 4);
     parian_free(NULL, text.text);
