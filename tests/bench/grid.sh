@@ -109,7 +109,7 @@ path)
     table path
     ;;
 settings)
-    cell settings figurine marble 50mm --lights "$out/sun.json" --receivers "${RECEIVERS:-1000}" --map-receivers 20000 \
+    cell settings figurine marble 50mm --lights "$out/sun.json" --receivers "${RECEIVERS:-1000}" \
         --bake '' --bake '--quality preview' --bake '--quality production' --bake '--form paper' \
         --bake '--threshold 0.01' --bake '--threshold 0.05' --bake '--transfer-vertices 5000 --threshold 0.01' \
         --bake '--transfer-vertices 2500 --threshold 0.05 --atlas 256' --bake '--transfer-vertices 1000 --atlas 256' \
