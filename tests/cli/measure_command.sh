@@ -48,11 +48,15 @@ for file in "$work"/new/a/cache/truth-*; do printf damage | dd of="$file" bs=1 s
 expect 0 measure --bake "$bake" --lights "$work/sun.json" -o "$work/c" --cache "$work/new/a/cache" -q --threads 3
 [ "$(numbers "$work/c/results.csv")" = "$(numbers "$csv" | grep ',sun,' | grep -v paper)" ] || fail "other numbers after damage"
 
-# An asset as it is, its own surface and the backend by default; maps, pictures, models that are named.
+# What a graphics driver keeps until the end cannot be told from a leak of ours once the driver is unloaded.
+backend=core
+[ "${PARIAN_SANITIZED:-0}" = 0 ] || backend=cpu
+
+# An asset as it is, with its own surface; maps, pictures, models that are named.
 asset=$(ls "$work"/new/a/cache/bake-*.parian | head -1)
 cp "$asset" "$work/given.parian"
 expect 0 parian-measure "$work/given.parian" --lights "$work/lamp.json" -o "$work/d" -q --relight-seconds 0.05 --receivers 40 --map-receivers 80 \
-    --images --picture-size 48 --reference directional --reference-samples 4000
+    --images --picture-size 48 --backend $backend --reference directional --reference-samples 4000
 [ "$(wc -l < "$work/d/results.csv")" = 4 ] || fail "rows of an asset"
 contains "$work/d/results.csv" ",directional,"
 contains "$work/d/results.json" '"surface":	"asset"'
@@ -90,11 +94,11 @@ mistake 3 measure --lights "$work/dark.json" -o "$work/f"
 printf '{"lights":[{"type":"sun"}]}' > "$work/broken.json"
 mistake 3 measure --lights "$work/broken.json" -o "$work/f"
 printf 'OFF\n3 1 0\n0 0' > "$work/cut.off"
-expect 3 parian-measure "$work/cut.off" --unit mm --lights "$work/sun.json" -o "$work/g" -q
+expect 3 parian-measure "$work/cut.off" --unit mm --lights "$work/sun.json" -o "$work/g" --backend $backend -q
 one_line "$err"
 [ ! -e "$work/g/results.csv" ] || fail "results of a failed run"
 head -c 1000 "$work/given.parian" > "$work/cut.parian"
-expect 3 parian-measure "$work/cut.parian" --lights "$work/sun.json" -o "$work/g" -q
+expect 3 parian-measure "$work/cut.parian" --lights "$work/sun.json" -o "$work/g" --backend $backend -q
 one_line "$err"
 printf x > "$work/file"
 expect 2 measure --lights "$work/sun.json" -o "$work/file" -q
