@@ -37,15 +37,6 @@ static const char EPILOGUE[] =
     "  parian-bake bunny.ply --scale 50mm --material marble -o bunny.parian --report bunny.json\n"
     "  parian-bake bust.obj --unit mm --material skin1 --quality preview -o bust.parian";
 
-#define FLAG(n, v, h)                                                                              \
-    {                                                                                              \
-        .name = (n), .kind = PARIAN_OPTION_FLAG, .value = (v), .help = (h)                         \
-    }
-#define LATER(n)                                                                                   \
-    {                                                                                              \
-        .name = (n), .kind = PARIAN_OPTION_LATER                                                   \
-    }
-
 static parian_result parse_table(int argc, char **argv, raw_options *raw,
                                  parian_bake_options *options, parian_string_list *inputs)
 {
@@ -68,7 +59,8 @@ static parian_result parse_table(int argc, char **argv, raw_options *raw,
          0, 0, NULL, &raw->scale_given},
         {"--unit", NULL, PARIAN_OPTION_CHOICE, &raw->unit, "UNIT", "Unit of length of the file.", 0,
          0, "mm|cm|m", &raw->unit_given},
-        FLAG("--keep-origin", &raw->keep_origin, "Do not move the box's centre to the origin."),
+        PARIAN_FLAG_ROW("--keep-origin", &raw->keep_origin,
+                        "Do not move the box's centre to the origin."),
         {"--bssrdf", NULL, PARIAN_OPTION_CHOICE, &raw->bssrdf, "MODEL",
          "Model of the transport: the standard dipole by distance, or with the true gradient at "
          "the receiver "
@@ -102,10 +94,14 @@ static parian_result parse_table(int argc, char **argv, raw_options *raw,
         {"--threshold-absolute", NULL, PARIAN_OPTION_NUMBER, &raw->threshold_absolute, "T",
          "Drop the factors below T, as the paper does (there 1e-5).", 1e-12, 1, NULL,
          &raw->absolute_given},
-        FLAG("--force-local", &raw->force_local, "Keep the local part whatever the plan says."),
-        FLAG("--force-global", &raw->force_global, "Keep the global part whatever the plan says."),
-        FLAG("--no-local", &raw->no_local, "Leave the local part out whatever the plan says."),
-        FLAG("--no-global", &raw->no_global, "Leave the global part out whatever the plan says."),
+        PARIAN_FLAG_ROW("--force-local", &raw->force_local,
+                        "Keep the local part whatever the plan says."),
+        PARIAN_FLAG_ROW("--force-global", &raw->force_global,
+                        "Keep the global part whatever the plan says."),
+        PARIAN_FLAG_ROW("--no-local", &raw->no_local,
+                        "Leave the local part out whatever the plan says."),
+        PARIAN_FLAG_ROW("--no-global", &raw->no_global,
+                        "Leave the global part out whatever the plan says."),
         {"--quality", NULL, PARIAN_OPTION_CHOICE, &raw->quality, "NAME",
          "Named settings; explicit options win. preview: 2500 vertices, atlas 256, threshold 0.01; "
          "medium: the defaults; production: 16000 vertices, atlas 1024, kernel 9 (medium).",
@@ -113,19 +109,21 @@ static parian_result parse_table(int argc, char **argv, raw_options *raw,
         {"--report", NULL, PARIAN_OPTION_STRING, &raw->report, "FILE.json",
          "Write stages, seconds, memory, counts, sizes, repairs, the plan and its reasons.", 0, 0,
          NULL, NULL},
-        FLAG("-MD", &raw->md, "Write a dependency file OUT.parian.d for Make and Ninja."),
+        PARIAN_FLAG_ROW("-MD", &raw->md,
+                        "Write a dependency file OUT.parian.d for Make and Ninja."),
         {"-MF", NULL, PARIAN_OPTION_STRING, &raw->depfile, "FILE", "Name of the dependency file.",
          0, 0, NULL, NULL},
         {"--dump", NULL, PARIAN_OPTION_STRING, &raw->dump, "DIR",
          "Write every intermediate array as .npy and the atlas as PNG and EXR.", 0, 0, NULL, NULL},
-        FLAG("--print-config", &options->print_config,
-             "Print the resolved settings as JSON and stop."),
-        FLAG("--list-materials", &options->list_materials, "Print the presets and stop."),
+        PARIAN_FLAG_ROW("--print-config", &options->print_config,
+                        "Print the resolved settings as JSON and stop."),
+        PARIAN_FLAG_ROW("--list-materials", &options->list_materials,
+                        "Print the presets and stop."),
         {"--seed", NULL, PARIAN_OPTION_COUNT, &raw->seed, "N",
          "Seed of the stages that draw random numbers; none of them does at present (0).", 0,
          4294967295.0, NULL, NULL},
-        LATER("--samples"),
-        LATER("--max-error"),
+        PARIAN_LATER_ROW("--samples"),
+        PARIAN_LATER_ROW("--max-error"),
     };
     const parian_command command = {.tool = "parian-bake",
                                     .usage = "INPUT -o OUT.parian [options]",

@@ -53,20 +53,11 @@ static const char EPILOGUE[] =
     "      --standard-error 0.005 -o truth\n"
     "  parian-bake reference --model planar --material skin1 --thickness 2mm -o tables";
 
-#define FLAG(n, v, h)                                                                              \
-    {                                                                                              \
-        .name = (n), .kind = PARIAN_OPTION_FLAG, .value = (v), .help = (h)                         \
-    }
-#define GROUP(n)                                                                                   \
-    {                                                                                              \
-        .name = (n), .kind = PARIAN_OPTION_GROUP                                                   \
-    }
-
 static parian_result parse_table(int argc, char **argv, raw_options *raw,
                                  parian_reference_options *o, parian_string_list *inputs)
 {
     const parian_option table[] = {
-        GROUP("Scene"),
+        PARIAN_GROUP_ROW("Scene"),
         {"--material", NULL, PARIAN_OPTION_LIST, &o->materials, "NAME",
          "As in a bake: a preset, a FILE.json, or MESHNAME=NAME. Default: the model's own, else "
          "marble, with a warning.",
@@ -76,7 +67,8 @@ static parian_result parse_table(int argc, char **argv, raw_options *raw,
          &raw->scale_given},
         {"--unit", NULL, PARIAN_OPTION_CHOICE, &raw->unit, "UNIT", "Unit of length of the file.", 0,
          0, "mm|cm|m", &raw->unit_given},
-        FLAG("--keep-origin", &o->scene.keep_origin, "Do not move the box's centre to the origin."),
+        PARIAN_FLAG_ROW("--keep-origin", &o->scene.keep_origin,
+                        "Do not move the box's centre to the origin."),
         {"--lights", NULL, PARIAN_OPTION_STRING, &o->lights_file, "FILE.json",
          "The lights. Default: the scene's own.", 0, 0, NULL, NULL},
         {"--light", NULL, PARIAN_OPTION_LIST, &o->light_specs, "SPEC",
@@ -86,7 +78,7 @@ static parian_result parse_table(int argc, char **argv, raw_options *raw,
          "path: coefficients on a grid over each body's box, [z][y][x] factors, or [z][y][x][6] "
          "sigma_s and sigma_a in 1/mm.",
          0, 0, NULL, NULL},
-        GROUP("Truth"),
+        PARIAN_GROUP_ROW("Truth"),
         {"--model", NULL, PARIAN_OPTION_CHOICE, &raw->model, "MODEL",
          "dipole, dipole-flux, directional or pbd over the surface; path for the radiative "
          "transfer "
@@ -104,7 +96,7 @@ static parian_result parse_table(int argc, char **argv, raw_options *raw,
          4294967295.0, NULL, NULL},
         {"-o", "--output", PARIAN_OPTION_STRING, &o->output, "DIR", "The folder to write.", 0, 0,
          NULL, NULL},
-        GROUP("Models over the surface"),
+        PARIAN_GROUP_ROW("Models over the surface"),
         {"--fdr", NULL, PARIAN_OPTION_CHOICE, &raw->fdr, "FORM",
          "Fresnel moments of the dipoles: exact, or the printed fit (exact).", 0, 0, "exact|fit",
          &raw->fdr_given},
@@ -112,19 +104,19 @@ static parian_result parse_table(int argc, char **argv, raw_options *raw,
          "directional, pbd: scale each channel to the total that radiative transfer gives a "
          "half-space (on).",
          0, 0, "on|off", &raw->normalise_given},
-        GROUP("Path tracing"),
+        PARIAN_GROUP_ROW("Path tracing"),
         {"--standard-error", NULL, PARIAN_OPTION_NUMBER, &o->standard_error, "E",
          "Stop when the root mean square standard error is below this share of the mean of B "
          "(0.02 unless --samples is given).",
          1e-6, 1, NULL, &raw->error_given},
         {"--walk", NULL, PARIAN_OPTION_CHOICE, &raw->walk, "KIND",
-         "Walks from the receivers or from the light; auto takes the better for each light "
-         "(auto).",
+         "Walks from the receivers or from the light; auto tries both and keeps the better for "
+         "each light (auto).",
          0, 0, "auto|adjoint|forward", &raw->walk_given},
         {"--patch", NULL, PARIAN_OPTION_LENGTH, &o->patch, "LEN",
          "Forward walks: radius of the disc around a receiver that gathers.", 0, 0, NULL,
          &raw->patch_given},
-        GROUP("Planes"),
+        PARIAN_GROUP_ROW("Planes"),
         {"--thickness", NULL, PARIAN_OPTION_LENGTH, &o->thickness, "LEN",
          "planar: a slab of this thickness too.", 0, 0, NULL, &raw->thickness_given},
     };

@@ -11,6 +11,7 @@
 
 #include <xxhash.h>
 
+#include "bake/reference/scene_hash.h"
 #include "core/memory.h"
 #include "tool/files.h"
 
@@ -45,94 +46,28 @@ void parian_path_state_free(const parian_env *env, parian_path_state *state)
 
 /* ---- what a run depends on ---- */
 
-static void add(XXH3_state_t *hash, const void *data, size_t size)
-{
-    XXH3_64bits_update(hash, data, size);
-}
-
-static void add_mesh(XXH3_state_t *hash, const parian_mesh *mesh)
-{
-    add(hash, &mesh->vertex_count, sizeof mesh->vertex_count);
-    add(hash, &mesh->triangle_count, sizeof mesh->triangle_count);
-    add(hash, mesh->position, mesh->vertex_count * sizeof *mesh->position);
-    add(hash, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
-}
-
-static void add_body(XXH3_state_t *hash, const parian_reference_body *body)
-{
-    const parian_medium *m = &body->medium;
-    const parian_medium_field *f = body->field;
-    uint32_t flags = (m->reduced_only ? 1u : 0) | (f ? 2u : 0);
-    add_mesh(hash, &body->mesh);
-    add(hash, m->sigma_s_prime, sizeof m->sigma_s_prime);
-    add(hash, m->sigma_a, sizeof m->sigma_a);
-    add(hash, m->g, sizeof m->g);
-    add(hash, &m->eta, sizeof m->eta);
-    add(hash, &flags, sizeof flags);
-    if (f) {
-        size_t count = (size_t)f->size[0] * f->size[1] * f->size[2];
-        add(hash, f->size, sizeof f->size);
-        add(hash, f->lower, sizeof f->lower);
-        add(hash, f->upper, sizeof f->upper);
-        add(hash, f->sigma_s, count * sizeof *f->sigma_s);
-        add(hash, f->sigma_a, count * sizeof *f->sigma_a);
-    }
-}
-
-static void add_light(XXH3_state_t *hash, const parian_light *light)
-{
-    uint32_t type = (uint32_t)light->type;
-    const parian_light_image *image = &light->image;
-    add(hash, &type, sizeof type);
-    add(hash, light->position, sizeof light->position);
-    add(hash, light->direction, sizeof light->direction);
-    add(hash, light->up, sizeof light->up);
-    add(hash, light->color, sizeof light->color);
-    add(hash, &light->inner_deg, sizeof light->inner_deg);
-    add(hash, &light->outer_deg, sizeof light->outer_deg);
-    add(hash, light->axis_u, sizeof light->axis_u);
-    add(hash, light->axis_v, sizeof light->axis_v);
-    add(hash, &light->rotation_deg, sizeof light->rotation_deg);
-    if (image->pixel) {
-        add(hash, &image->width, sizeof image->width);
-        add(hash, &image->height, sizeof image->height);
-        add(hash, image->pixel, (size_t)image->width * image->height * sizeof *image->pixel);
-    }
-}
-
-static void add_settings(XXH3_state_t *hash, const parian_path_desc *desc)
-{
-    uint64_t numbers[3] = {desc->samples, desc->seed, (uint64_t)desc->walk};
-    double lengths[2] = {desc->standard_error, desc->patch};
-    add(hash, numbers, sizeof numbers);
-    add(hash, lengths, sizeof lengths);
-}
-
 parian_result parian_path_hash(const parian_env *env, const parian_reference_scene *scene,
                                const parian_receivers *receivers, const parian_path_desc *desc,
                                uint64_t *hash)
 {
-    XXH3_state_t *state = XXH3_createState();
-    if (!state) {
-        return parian_fail(env, PARIAN_E_NOMEM, "no memory for a checksum");
+    struct {
+        uint64_t scene[2], samples, seed, walk;
+        double standard_error, patch;
+    } all = {.samples = desc->samples,
+             .seed = desc->seed,
+             .walk = (uint64_t)desc->walk,
+             .standard_error = desc->standard_error,
+             .patch = desc->patch};
+    parian_result r = parian_reference_scene_hash(env, scene, receivers, all.scene);
+    if (r == PARIAN_OK) {
+        *hash = XXH3_64bits(&all, sizeof all);
     }
-    XXH3_64bits_reset(state);
-    for (uint32_t b = 0; b < scene->body_count; b++) {
-        add_body(state, &scene->bodies[b]);
-    }
-    for (uint32_t s = 0; s < scene->surrounding_count; s++) {
-        add_mesh(state, &scene->surroundings[s]);
-    }
-    for (uint32_t l = 0; l < scene->light_count; l++) {
-        add_light(state, &scene->lights[l]);
-    }
-    add(state, receivers->body, receivers->count * sizeof *receivers->body);
-    add(state, receivers->triangle, receivers->count * sizeof *receivers->triangle);
-    add(state, receivers->barycentric, receivers->count * sizeof *receivers->barycentric);
-    add_settings(state, desc);
-    *hash = XXH3_64bits_digest(state);
-    XXH3_freeState(state);
-    return PARIAN_OK;
+    return r;
+}
+
+static void add(XXH3_state_t *hash, const void *data, size_t size)
+{
+    XXH3_64bits_update(hash, data, size);
 }
 
 /* ---- the file ---- */

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "bake/reference/path_pilot.h"
 #include "bake/reference/path_rounds.h"
 #include "bake/reference/reference_scene.h"
 #include "bake/reference/vec3d.h"
@@ -18,7 +19,10 @@ enum {
     GRID_MOST = 192,
     GRID_PER_FLIGHT = 4, /* voxels per mean free path */
     SAMPLES_DEFAULT = 1024,
-    IRRADIANCE_SAMPLES = 256 /* for E of a light of extent */
+    IRRADIANCE_SAMPLES = 256, /* for E of a light of extent */
+    PILOT_WALKS = 32,
+    PILOT_FEWEST = 8,
+    PILOT_SHARE = 16 /* walks of the run for each of the pilot, at least */
 };
 static const uint64_t SAMPLES_MAX = (uint64_t)1 << 40;
 static const uint64_t IRRADIANCE_SEED = 0x4952524144494E43u;
@@ -121,8 +125,6 @@ static parian_result prepare_lights(path_scene *path, parian_walk_kind walk)
         if (delta) {
             set_light_point(path, l);
         }
-        path->any_connection |= path->light[l].meeting == PATH_BY_CONNECTION;
-        path->any_forward |= path->light[l].meeting != PATH_BY_EXIT;
         r = parian_path_entries_make(path, l);
         r = r == PARIAN_OK ? prepare_indices(path, &path->light[l]) : r;
     }
@@ -200,6 +202,14 @@ static bool any_light_without_extent(const parian_reference_scene *scene)
     return false;
 }
 
+static uint64_t resolve_samples(const parian_path_desc *desc)
+{
+    if (desc->samples > 0) {
+        return desc->samples;
+    }
+    return desc->standard_error > 0 ? SAMPLES_MAX : SAMPLES_DEFAULT;
+}
+
 /* Half a transport mean free path, but never more than a hundredth of the body nor less than a
  * thousandth. */
 static double default_patch(const path_scene *path)
@@ -218,6 +228,36 @@ static double default_patch(const path_scene *path)
     return patch > 0 ? patch : 1e-3;
 }
 
+/* Walks of the pilot: none where the run itself has hardly more. */
+static uint32_t pilot_walks(const parian_path_desc *desc)
+{
+    uint64_t samples = resolve_samples(desc) / PILOT_SHARE;
+    return samples >= PILOT_WALKS ? PILOT_WALKS : samples >= PILOT_FEWEST ? (uint32_t)samples : 0;
+}
+
+/* Patches where photons may be needed; then each light's kind, where that is left open. */
+static parian_result settle_meetings(path_scene *path, const parian_path_desc *desc)
+{
+    uint32_t walks = desc->walk == PARIAN_WALK_AUTO ? pilot_walks(desc) : 0;
+    bool any = walks > 0;
+    for (uint32_t l = 0; l < path->scene->light_count; l++) {
+        any |= path->light[l].meeting != PATH_BY_EXIT;
+    }
+    parian_result r = PARIAN_OK;
+    if (any) {
+        r = parian_path_patches_make(path, desc->patch > 0 ? desc->patch : default_patch(path));
+    }
+    if (r == PARIAN_OK && walks > 0) {
+        r = parian_path_choose_meetings(path, walks);
+    }
+    path->any_connection = false;
+    for (uint32_t l = 0; l < path->scene->light_count; l++) {
+        path->any_connection |= path->light[l].meeting == PATH_BY_CONNECTION;
+        path->any_forward |= path->light[l].meeting != PATH_BY_EXIT;
+    }
+    return r;
+}
+
 static parian_result prepare(path_scene *path, const parian_path_desc *desc)
 {
     parian_result r = PARIAN_OK;
@@ -232,10 +272,7 @@ static parian_result prepare(path_scene *path, const parian_path_desc *desc)
     }
     r = r == PARIAN_OK ? list_triangles(path) : r;
     r = r == PARIAN_OK ? prepare_lights(path, desc->walk) : r;
-    if (r == PARIAN_OK && path->any_forward) {
-        r = parian_path_patches_make(path, desc->patch > 0 ? desc->patch : default_patch(path));
-    }
-    return r;
+    return r == PARIAN_OK ? settle_meetings(path, desc) : r;
 }
 
 static void unprepare(path_scene *path)
@@ -312,14 +349,6 @@ static void fill_result(const path_run *run, parian_reference_result *result)
                    "path tracing: %llu of %llu walks and photons were lost",
                    (unsigned long long)now->lost, (unsigned long long)now->started);
     }
-}
-
-static uint64_t resolve_samples(const parian_path_desc *desc)
-{
-    if (desc->samples > 0) {
-        return desc->samples;
-    }
-    return desc->standard_error > 0 ? SAMPLES_MAX : SAMPLES_DEFAULT;
 }
 
 static parian_result trace(path_run *run, parian_reference_result *result)

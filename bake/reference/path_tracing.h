@@ -19,7 +19,7 @@ typedef struct parian_path_desc {
     double standard_error; /* stop when its root mean square over the receivers is below this share
                             * of the mean of B in every channel; 0: take all samples */
     uint64_t seed;
-    parian_walk_kind walk; /* auto: the better one for each light */
+    parian_walk_kind walk; /* auto: the one that takes less work, tried for each light */
     double patch; /* forward: radius of the disc around a receiver that gathers, m; 0 takes a
                      default */
     const char *checkpoint; /* file that a stopped run goes on from and that is removed at the end;

@@ -40,6 +40,20 @@ typedef struct parian_option {
     bool *given;             /* set when the option was given; may be NULL */
 } parian_option;
 
+/* Rows that have no argument. */
+#define PARIAN_FLAG_ROW(option_name, flag, text)                                                   \
+    {                                                                                              \
+        .name = (option_name), .kind = PARIAN_OPTION_FLAG, .value = (flag), .help = (text)         \
+    }
+#define PARIAN_LATER_ROW(option_name)                                                              \
+    {                                                                                              \
+        .name = (option_name), .kind = PARIAN_OPTION_LATER                                         \
+    }
+#define PARIAN_GROUP_ROW(heading)                                                                  \
+    {                                                                                              \
+        .name = (heading), .kind = PARIAN_OPTION_GROUP                                             \
+    }
+
 typedef struct parian_command {
     const char *tool;     /* "parian-bake" */
     const char *usage;    /* "INPUT -o OUT.parian [options]" */

@@ -18,10 +18,10 @@ static const double EXPOSURE_LIMIT = 60, RADIANCE_LIMIT = 1e6;
 static size_t fill_table(parian_view_options *o, parian_option table[OPTION_MAX])
 {
     const parian_option rows[] = {
-        {"--headless", NULL, PARIAN_OPTION_FLAG, &o->headless, NULL,
-         "Render without a window, through EGL; no display is needed.", 0, 0, NULL, NULL},
-        {"--cpu", NULL, PARIAN_OPTION_FLAG, &o->cpu, NULL,
-         "Evaluate in C instead of OpenGL; implies --headless and needs no EGL.", 0, 0, NULL, NULL},
+        PARIAN_FLAG_ROW("--headless", &o->headless,
+                        "Render without a window, through EGL; no display is needed."),
+        PARIAN_FLAG_ROW("--cpu", &o->cpu,
+                        "Evaluate in C instead of OpenGL; implies --headless and needs no EGL."),
         {"--size", NULL, PARIAN_OPTION_STRING, &o->size_text, "WxH",
          "Pixels of the picture or window (960x720).", 0, 0, NULL, NULL},
         {"--image", NULL, PARIAN_OPTION_STRING, &o->image, "FILE",
@@ -51,8 +51,7 @@ static size_t fill_table(parian_view_options *o, parian_option table[OPTION_MAX]
          0, NULL, NULL},
         {"--roughness", NULL, PARIAN_OPTION_NUMBER, &o->roughness, "X",
          "Roughness of the surface reflection, 0.05 to 1 (0.35).", 0.05, 1, NULL, NULL},
-        {"--no-specular", NULL, PARIAN_OPTION_FLAG, &o->no_specular, NULL,
-         "Leave the surface reflection out.", 0, 0, NULL, NULL},
+        PARIAN_FLAG_ROW("--no-specular", &o->no_specular, "Leave the surface reflection out."),
         {"--frames", NULL, PARIAN_OPTION_COUNT, &o->frames, "N",
          "Frames to render, each with a full relight (1; 11 with --timings); a window closes after "
          "them.",

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "bake/reference/scene_hash.h"
 #include "core/memory.h"
 #include "parian/format.h"
 #include "tests/measure/content_hash.h"
@@ -12,88 +13,11 @@
 
 /* Raised when a reference model changes what it means; a build alone does not cost the truths that
  * are kept. */
-enum { TRUTH_VERSION = 1 };
+enum { TRUTH_VERSION = 2 };
 
 /* ---- the name
  * -----------------------------------------------------------------------------------------------
  */
-static void hash_mesh(parian_content_hash *hash, const parian_mesh *mesh)
-{
-    parian_content_hash_add(hash, mesh->position, mesh->vertex_count * sizeof *mesh->position);
-    parian_content_hash_add(hash, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
-    parian_content_hash_add(hash, mesh->corner_normal,
-                            mesh->corner_normal ? mesh->triangle_count * sizeof *mesh->corner_normal
-                                                : 0);
-}
-
-static void hash_medium(parian_content_hash *hash, const parian_medium *medium)
-{
-    parian_content_hash_add(hash, medium->sigma_s_prime, sizeof medium->sigma_s_prime);
-    parian_content_hash_add(hash, medium->sigma_a, sizeof medium->sigma_a);
-    parian_content_hash_add(hash, medium->g, sizeof medium->g);
-    parian_content_hash_number(hash, medium->eta);
-    parian_content_hash_count(hash, medium->reduced_only);
-}
-
-static void hash_field(parian_content_hash *hash, const parian_medium_field *field)
-{
-    parian_content_hash_count(hash, field != NULL);
-    if (field) {
-        size_t nodes = (size_t)field->size[0] * field->size[1] * field->size[2];
-        parian_content_hash_add(hash, field->size, sizeof field->size);
-        parian_content_hash_add(hash, field->lower, sizeof field->lower);
-        parian_content_hash_add(hash, field->upper, sizeof field->upper);
-        parian_content_hash_add(hash, field->sigma_s, nodes * sizeof *field->sigma_s);
-        parian_content_hash_add(hash, field->sigma_a, nodes * sizeof *field->sigma_a);
-    }
-}
-
-static void hash_light(parian_content_hash *hash, const parian_light *light)
-{
-    size_t pixels = light->image.pixel ? (size_t)light->image.width * light->image.height : 0;
-    parian_content_hash_count(hash, (uint64_t)light->type);
-    parian_content_hash_add(hash, light->position, sizeof light->position);
-    parian_content_hash_add(hash, light->direction, sizeof light->direction);
-    parian_content_hash_add(hash, light->up, sizeof light->up);
-    parian_content_hash_add(hash, light->color, sizeof light->color);
-    parian_content_hash_add(hash, light->axis_u, sizeof light->axis_u);
-    parian_content_hash_add(hash, light->axis_v, sizeof light->axis_v);
-    parian_content_hash_number(hash, light->inner_deg);
-    parian_content_hash_number(hash, light->outer_deg);
-    parian_content_hash_number(hash, light->rotation_deg);
-    parian_content_hash_count(hash, pixels ? light->image.width : 0);
-    parian_content_hash_add(hash, light->image.pixel, pixels * sizeof *light->image.pixel);
-}
-
-static void hash_scene(parian_content_hash *hash, const parian_reference_scene *scene)
-{
-    parian_content_hash_count(hash, scene->body_count);
-    for (uint32_t b = 0; b < scene->body_count; b++) {
-        hash_mesh(hash, &scene->bodies[b].mesh);
-        hash_medium(hash, &scene->bodies[b].medium);
-        hash_field(hash, scene->bodies[b].field);
-    }
-    parian_content_hash_count(hash, scene->surrounding_count);
-    for (uint32_t s = 0; s < scene->surrounding_count; s++) {
-        hash_mesh(hash, &scene->surroundings[s]);
-    }
-    parian_content_hash_count(hash, scene->light_count);
-    for (uint32_t l = 0; l < scene->light_count; l++) {
-        hash_light(hash, &scene->lights[l]);
-    }
-}
-
-static void hash_receivers(parian_content_hash *hash, const parian_receivers *receivers)
-{
-    size_t n = receivers->count;
-    parian_content_hash_add(hash, receivers->position, n * sizeof *receivers->position);
-    parian_content_hash_add(hash, receivers->normal, n * sizeof *receivers->normal);
-    parian_content_hash_add(hash, receivers->smooth_normal, n * sizeof *receivers->smooth_normal);
-    parian_content_hash_add(hash, receivers->area, n * sizeof *receivers->area);
-    parian_content_hash_add(hash, receivers->body, n * sizeof *receivers->body);
-    parian_content_hash_add(hash, receivers->triangle, n * sizeof *receivers->triangle);
-}
-
 static void hash_desc(parian_content_hash *hash, const parian_truth_desc *desc)
 {
     parian_content_hash_count(hash, TRUTH_VERSION);
@@ -113,9 +37,11 @@ parian_result parian_truth_name(const parian_env *env, const parian_reference_sc
     parian_content_hash *hash = NULL;
     parian_result r = parian_content_hash_begin(env, &hash);
     if (r == PARIAN_OK) {
+        uint64_t content[2] = {0};
+        r = parian_reference_scene_hash(env, scene, receivers, content);
         hash_desc(hash, desc);
-        hash_scene(hash, scene);
-        hash_receivers(hash, receivers);
+        parian_content_hash_count(hash, content[0]);
+        parian_content_hash_count(hash, content[1]);
         parian_content_hash_end(hash, digits);
         snprintf(name, PARIAN_TRUTH_NAME_MAX, "truth-%s", digits);
     }
