@@ -229,7 +229,7 @@ parian_result parian_renderer_set_lights(parian_renderer *renderer, const parian
 parian_result parian_renderer_set_settings(parian_renderer *renderer,
                                            const parian_settings *settings)
 {
-    if (!renderer || !settings || (unsigned)settings->view > PARIAN_VIEW_CHARTS ||
+    if (!renderer || !settings || (unsigned)settings->view > PARIAN_VIEW_VALUES ||
         !(settings->roughness >= 0.0f && settings->roughness <= 1.0f)) {
         return renderer ? parian_fail(&renderer->env, PARIAN_E_ARGUMENT,
                                       "settings need a known view and a roughness of 0 to 1")
@@ -243,6 +243,21 @@ parian_result parian_renderer_set_settings(parian_renderer *renderer,
     }
     renderer->settings = *settings;
     return PARIAN_OK;
+}
+
+parian_result parian_renderer_set_values(parian_renderer *renderer, const float (*value)[3])
+{
+    if (!renderer || !value) {
+        return PARIAN_E_ARGUMENT;
+    }
+    parian_result result = PARIAN_OK;
+    renderer->has_values = false;
+    for (uint32_t b = 0; b < renderer->scene->data.body_count && result == PARIAN_OK; b++) {
+        result = renderer->backend->set_values(renderer, b, value);
+        value += renderer->scene->data.bodies[b].texel_count;
+    }
+    renderer->has_values = result == PARIAN_OK;
+    return result;
 }
 
 parian_result parian_renderer_relight(parian_renderer *renderer)
@@ -286,6 +301,9 @@ parian_result parian_renderer_draw(parian_renderer *renderer, const parian_draw_
         return parian_fail(&renderer->env, PARIAN_E_ARGUMENT,
                            "camera matrices must be finite and the exposure within 100 stops");
     }
+    if (renderer->settings.view == PARIAN_VIEW_VALUES && !renderer->has_values) {
+        return parian_fail(&renderer->env, PARIAN_E_ARGUMENT, "there are no values to paint");
+    }
     parian_result result = parian_renderer_relight(renderer);
     if (result == PARIAN_OK) {
         result = renderer->backend->draw(renderer, desc);
@@ -321,6 +339,10 @@ static void copy_surface(const parian_body *body, const parian_texel_arrays *arr
     }
     if (arrays->area) {
         memcpy(arrays->area + first, body->texel_area, count * sizeof *arrays->area);
+    }
+    for (size_t t = 0; arrays->place && t < count; t++) {
+        arrays->place[first + t][0] = body->texel_index[t] % body->atlas_size;
+        arrays->place[first + t][1] = body->texel_index[t] / body->atlas_size;
     }
 }
 

@@ -44,6 +44,8 @@ typedef struct parian_backend_table {
     /* A result at owned texels of one body: [texel_count]. */
     parian_result (*read_texels)(parian_renderer *renderer, uint32_t body,
                                  parian_texel_result which, float (*value)[3]);
+    /* Values to paint on one body: [texel_count]. */
+    parian_result (*set_values)(parian_renderer *renderer, uint32_t body, const float (*value)[3]);
     /* A register of one body: [size of the register]; register 0 is Phi, 1 is B at vertices. */
     parian_result (*read_register)(parian_renderer *renderer, uint32_t body, uint32_t index,
                                    float (*value)[3]);
@@ -64,6 +66,7 @@ struct parian_renderer {
     parian_light_list lights;
     parian_body_optics *optics; /* [body_count] */
     bool lights_changed;        /* since the last relight */
+    bool has_values;            /* to paint on the bodies */
     bool timing;
     double pass_start;
     parian_pass_time pass[PARIAN_PASS_COUNT];

@@ -104,6 +104,32 @@ void parian_scene_close(parian_scene *scene)
     }
 }
 
+parian_scene_body parian_scene_get_body(const parian_scene *scene, uint32_t index)
+{
+    if (index >= scene->data.body_count) {
+        return (parian_scene_body){0};
+    }
+    const parian_body *body = &scene->data.bodies[index];
+    parian_scene_body out = {.name = body->name,
+                             .medium_name = body->medium.name,
+                             .eta = body->medium.eta,
+                             .atlas_size = body->atlas_size,
+                             .chart_count = body->chart_count,
+                             .texel_count = body->texel_count,
+                             .vertex_count = body->vertex_count,
+                             .triangle_count = body->triangle_count,
+                             .has_local = body->local_form != PARIAN_LOCAL_NONE,
+                             .has_global = body->has_global};
+    for (int c = 0; c < 3; c++) {
+        out.sigma_s_prime[c] = body->medium.sigma_s_prime[c];
+        out.sigma_a[c] = body->medium.sigma_a[c];
+    }
+    for (uint32_t o = 0; o < body->operator_count; o++) {
+        out.factor_count += body->operators[o].factor_total;
+    }
+    return out;
+}
+
 parian_scene_info parian_scene_get_info(const parian_scene *scene)
 {
     return scene->info;

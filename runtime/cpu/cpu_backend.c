@@ -50,6 +50,7 @@ static void destroy_body(const parian_env *env, cpu_body *made)
     parian_free(env, made->atlas.global);
     parian_free(env, made->atlas.normal);
     parian_free(env, made->atlas.albedo);
+    parian_free(env, made->atlas.values);
 }
 
 static void cpu_destroy(parian_renderer *renderer)
@@ -273,7 +274,7 @@ static parian_result cpu_draw(parian_renderer *renderer, const parian_draw_desc 
     parian_renderer_end_pass(renderer, PARIAN_PASS_SHADE);
     parian_renderer_begin_pass(renderer);
     const float(*picture)[4] = (const float(*)[4])state->picture;
-    bool plain = renderer->settings.view >= PARIAN_VIEW_NORMALS;
+    bool plain = parian_view_is_plain(renderer->settings.view);
     float exposure = desc->exposure_auto ? parian_cpu_exposure(picture, count) : 1.0f;
     parian_cpu_tone(picture, count, exposure * exp2f(desc->exposure_ev), plain, state->srgb);
     parian_renderer_end_pass(renderer, PARIAN_PASS_TONE);
@@ -307,6 +308,22 @@ static parian_result cpu_read_texels(parian_renderer *renderer, uint32_t body,
     return PARIAN_OK;
 }
 
+static parian_result cpu_set_values(parian_renderer *renderer, uint32_t body,
+                                    const float (*value)[3])
+{
+    cpu_state *state = renderer->state;
+    cpu_body *made = &state->body[body];
+    const parian_body *data = &renderer->scene->data.bodies[body];
+    const size_t count = (size_t)data->atlas_size * data->atlas_size;
+    if (!made->atlas.values && !PARIAN_NEW(&renderer->env, made->atlas.values, count)) {
+        return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for the values of %u texels",
+                           data->texel_count);
+    }
+    parian_atlas_fill(data, value, made->atlas.values);
+    state->atlas[body].values = made->atlas.values;
+    return PARIAN_OK;
+}
+
 static parian_result cpu_read_register(parian_renderer *renderer, uint32_t body, uint32_t index,
                                        float (*value)[3])
 {
@@ -323,6 +340,6 @@ static uint64_t cpu_memory(const parian_renderer *renderer)
 }
 
 const parian_backend_table parian_cpu_backend = {
-    cpu_create,       cpu_destroy,     cpu_relight,       cpu_draw,
-    cpu_read_picture, cpu_read_texels, cpu_read_register, cpu_memory,
+    cpu_create,      cpu_destroy,    cpu_relight,       cpu_draw,   cpu_read_picture,
+    cpu_read_texels, cpu_set_values, cpu_read_register, cpu_memory,
 };

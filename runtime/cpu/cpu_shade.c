@@ -188,15 +188,17 @@ static void scattered(const parian_shade_desc *desc, uint32_t b, const float uv[
     if (view == PARIAN_VIEW_IRRADIANCE || view == PARIAN_VIEW_OPAQUE) {
         fetch_atlas((const float(*)[4])atlas->irradiance, size, uv, value);
     }
-    if (view == PARIAN_VIEW_COMBINED || view == PARIAN_VIEW_LOCAL) {
+    const bool both = view == PARIAN_VIEW_COMBINED || view == PARIAN_VIEW_RADIOSITY;
+    if (both || view == PARIAN_VIEW_LOCAL) {
         fetch_atlas((const float(*)[4])atlas->local, size, uv, part);
         vec3_add_scaled(value, part, 1.0f);
     }
-    if (view == PARIAN_VIEW_COMBINED || view == PARIAN_VIEW_GLOBAL) {
+    if (both || view == PARIAN_VIEW_GLOBAL) {
         fetch_atlas((const float(*)[4])atlas->global, size, uv, part);
         vec3_add_scaled(value, part, 1.0f);
     }
-    if (atlas->albedo && !desc->settings->no_albedo && view != PARIAN_VIEW_IRRADIANCE) {
+    if (atlas->albedo && !desc->settings->no_albedo && view != PARIAN_VIEW_IRRADIANCE &&
+        view != PARIAN_VIEW_RADIOSITY) {
         fetch_atlas((const float(*)[4])atlas->albedo, size, uv, part);
         for (int c = 0; c < 3; c++) {
             value[c] *= part[c];
@@ -208,7 +210,8 @@ static void scattered(const parian_shade_desc *desc, uint32_t b, const float uv[
 static float exit_factor(const parian_shade_desc *desc, uint32_t b, float n_v, int channel)
 {
     const parian_body_optics *optics = &desc->optics[b];
-    if (desc->settings->view == PARIAN_VIEW_IRRADIANCE) {
+    if (desc->settings->view == PARIAN_VIEW_IRRADIANCE ||
+        desc->settings->view == PARIAN_VIEW_RADIOSITY) {
         return 1.0f / (float)M_PI;
     }
     if (desc->settings->view == PARIAN_VIEW_OPAQUE) {
@@ -239,6 +242,10 @@ static void shade_body(const parian_shade_desc *desc, uint32_t b, uint32_t trian
         vec3_scale(out, 0.3f + 0.7f * at->n_v);
         return;
     }
+    if (settings->view == PARIAN_VIEW_VALUES) {
+        fetch_atlas((const float(*)[4])desc->atlas[b].values, body->atlas_size, uv, out);
+        return;
+    }
     scattered(desc, b, uv, out);
     for (int c = 0; c < 3; c++) {
         out[c] = fmaxf(out[c] * exit_factor(desc, b, at->n_v, c), 0.0f);
@@ -262,7 +269,7 @@ static void shade_surrounding(const parian_shade_desc *desc, uint32_t index, con
     vec3_copy(n, smooth);
     vec3_scale(n, vec3_dot(smooth, v) < 0.0f ? -1.0f : 1.0f);
     vec3_set(out, 0.0f);
-    if (desc->settings->view == PARIAN_VIEW_NORMALS || desc->settings->view == PARIAN_VIEW_CHARTS) {
+    if (parian_view_is_plain(desc->settings->view)) {
         vec3_set(out, 0.5f);
         vec3_add_scaled(out, n, desc->settings->view == PARIAN_VIEW_NORMALS ? 0.5f : 0.0f);
         return;

@@ -13,7 +13,7 @@
  */
 typedef struct parian_shade_atlas {
     float (*irradiance)[4], (*local)[4], (*global)[4];
-    float (*normal)[4], (*albedo)[4];
+    float (*normal)[4], (*albedo)[4], (*values)[4];
 } parian_shade_atlas;
 
 typedef struct parian_shade_desc {

@@ -197,6 +197,16 @@ static parian_result gl_read_texels(parian_renderer *renderer, uint32_t body,
     return read_picked(&state->device, texture, data->texel_index, data->texel_count, value);
 }
 
+static parian_result gl_set_values(parian_renderer *renderer, uint32_t body,
+                                   const float (*value)[3])
+{
+    gl_state *state = renderer->state;
+    gl_device_enter(&state->device);
+    parian_result result = gl_body_set_values(&state->device, &renderer->scene->data.bodies[body],
+                                              value, &state->body[body]);
+    return gl_device_leave(&state->device, result, "took in values");
+}
+
 static parian_result gl_read_register(parian_renderer *renderer, uint32_t body, uint32_t index,
                                       float (*value)[3])
 {
@@ -211,6 +221,6 @@ static uint64_t gl_memory(const parian_renderer *renderer)
 }
 
 const parian_backend_table parian_gl_backend = {
-    gl_create,       gl_destroy,     gl_relight,       gl_draw,
-    gl_read_picture, gl_read_texels, gl_read_register, gl_memory,
+    gl_create,      gl_destroy,    gl_relight,       gl_draw,   gl_read_picture,
+    gl_read_texels, gl_set_values, gl_read_register, gl_memory,
 };

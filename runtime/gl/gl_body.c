@@ -272,6 +272,22 @@ parian_result gl_body_create(gl_device *device, const parian_body *body, gl_body
     return PARIAN_OK;
 }
 
+parian_result gl_body_set_values(gl_device *device, const parian_body *body,
+                                 const float (*value)[3], gl_body *made)
+{
+    float(*scratch)[4];
+    if (!PARIAN_NEW(device->env, scratch, (size_t)body->atlas_size * body->atlas_size)) {
+        return parian_fail(device->env, PARIAN_E_NOMEM, "no memory for the values of %u texels",
+                           body->texel_count);
+    }
+    parian_atlas_fill(body, value, scratch);
+    gl_texture_destroy(device, &made->values);
+    parian_result result = gl_texture_create(device, GL_FORMAT_RGBA32F, body->atlas_size,
+                                             body->atlas_size, scratch, &made->values);
+    parian_free(device->env, scratch);
+    return result;
+}
+
 void gl_body_destroy(gl_device *device, gl_body *made)
 {
     gl_texture *textures[] = {&made->position,      &made->normal,
@@ -284,7 +300,7 @@ void gl_body_destroy(gl_device *device, gl_body *made)
                               &made->feed_weight,   &made->kernel,
                               &made->border,        &made->neighbour,
                               &made->border_kernel, &made->gutter_source,
-                              &made->gutter_weight};
+                              &made->gutter_weight, &made->values};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++) {
         gl_texture_destroy(device, textures[i]);
     }

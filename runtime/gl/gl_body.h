@@ -31,6 +31,7 @@ typedef struct gl_body {
     gl_texture normal_map, albedo; /* with gutters; absent where the body has none */
     gl_texture irradiance, local, global;
     gl_texture shown_irradiance, shown_local, shown_global; /* with gutters */
+    gl_texture values; /* to paint on the body; absent until they are given */
     /* Restriction, filter, gutter. */
     gl_texture feed_offset, feed, feed_weight;
     gl_texture kernel, border, neighbour, border_kernel;
@@ -44,6 +45,9 @@ typedef struct gl_body {
 } gl_body;
 
 parian_result gl_body_create(gl_device *device, const parian_body *body, gl_body *made);
+/* Values to paint on the body, [texel_count]. */
+parian_result gl_body_set_values(gl_device *device, const parian_body *body,
+                                 const float (*value)[3], gl_body *made);
 void gl_body_destroy(gl_device *device, gl_body *made);
 
 parian_result gl_mesh_create(gl_device *device, const parian_body *body,

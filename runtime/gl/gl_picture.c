@@ -126,7 +126,8 @@ static void draw_body(const parian_renderer *renderer, uint32_t b)
     const parian_body_optics *optics = &renderer->optics[b];
     bool whole = settings->view == PARIAN_VIEW_COMBINED || settings->view == PARIAN_VIEW_OPAQUE;
     float roughness = settings->roughness > 0.0f ? settings->roughness : 0.35f;
-    gl_pass_texture(device, "u_irradiance", &body->shown_irradiance);
+    gl_pass_texture(device, "u_irradiance",
+                    settings->view == PARIAN_VIEW_VALUES ? &body->values : &body->shown_irradiance);
     gl_pass_texture(device, "u_local", &body->shown_local);
     gl_pass_texture(device, "u_global", &body->shown_global);
     gl_pass_texture(device, "u_normal_map", &body->normal_map);
@@ -209,7 +210,7 @@ static void set_tone(const parian_renderer *renderer, const parian_draw_desc *de
     gl_pass_texture(device, "u_mean", &state->picture.mean);
     gl_pass_texture(device, "u_logs", &state->picture.logs);
     gl_pass_int(device, "u_auto", desc->exposure_auto ? 1 : 0);
-    gl_pass_int(device, "u_plain", renderer->settings.view >= PARIAN_VIEW_NORMALS ? 1 : 0);
+    gl_pass_int(device, "u_plain", parian_view_is_plain(renderer->settings.view));
     gl_pass_float(device, "u_exposure", exp2f(desc->exposure_ev));
     gl_pass_quad(device);
 }

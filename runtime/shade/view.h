@@ -14,6 +14,12 @@ typedef struct parian_view {
 
 parian_view parian_view_make(const parian_camera *camera);
 
+/* True for views of colours that exposure and tone curve leave alone. */
+static inline bool parian_view_is_plain(parian_view_mode mode)
+{
+    return mode == PARIAN_VIEW_NORMALS || mode == PARIAN_VIEW_CHARTS || mode == PARIAN_VIEW_VALUES;
+}
+
 /* Samples for a side of a picture pixel, so that neither side exceeds side_max. */
 uint32_t parian_view_supersampling(uint32_t width, uint32_t height, uint32_t side_max);
 

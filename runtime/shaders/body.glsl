@@ -1,11 +1,11 @@
 // body.glsl - radiance of a translucent body. C: cpu/cpu_shade.c.
 // SPDX-License-Identifier: MIT
 const int VIEW_COMBINED = 0, VIEW_LOCAL = 1, VIEW_GLOBAL = 2, VIEW_IRRADIANCE = 3, VIEW_OPAQUE = 4;
-const int VIEW_NORMALS = 5, VIEW_CHARTS = 6;
+const int VIEW_NORMALS = 5, VIEW_CHARTS = 6, VIEW_RADIOSITY = 7, VIEW_VALUES = 8;
 
 in vec3 v_position, v_normal, v_chart;
 in vec2 v_uv;
-uniform sampler2D u_irradiance; // atlases with gutters; alpha 1 where there is a value
+uniform sampler2D u_irradiance; // atlases with gutters; alpha 1 where there is a value; the values of VIEW_VALUES
 uniform sampler2D u_local;
 uniform sampler2D u_global;
 uniform sampler2D u_normal_map;
@@ -89,13 +89,14 @@ vec3 scattered()
     if (u_view == VIEW_IRRADIANCE || u_view == VIEW_OPAQUE) {
         value = fetch_atlas(u_irradiance, v_uv);
     }
-    if (u_view == VIEW_COMBINED || u_view == VIEW_LOCAL) {
+    bool both = u_view == VIEW_COMBINED || u_view == VIEW_RADIOSITY;
+    if (both || u_view == VIEW_LOCAL) {
         value += fetch_atlas(u_local, v_uv);
     }
-    if (u_view == VIEW_COMBINED || u_view == VIEW_GLOBAL) {
+    if (both || u_view == VIEW_GLOBAL) {
         value += fetch_atlas(u_global, v_uv);
     }
-    if (u_has_albedo != 0 && u_view != VIEW_IRRADIANCE) {
+    if (u_has_albedo != 0 && u_view != VIEW_IRRADIANCE && u_view != VIEW_RADIOSITY) {
         value *= fetch_atlas(u_albedo, v_uv);
     }
     return value;
@@ -118,10 +119,14 @@ void main()
         o_radiance.rgb = v_chart * (0.3 + 0.7 * n_v);
         return;
     }
+    if (u_view == VIEW_VALUES) {
+        o_radiance.rgb = fetch_atlas(u_irradiance, v_uv);
+        return;
+    }
     vec3 factor = vec3(1.0 / PI);
     if (u_view == VIEW_OPAQUE) {
         factor *= u_total;
-    } else if (u_view != VIEW_IRRADIANCE) {
+    } else if (u_view != VIEW_IRRADIANCE && u_view != VIEW_RADIOSITY) {
         factor *= fresnel_transmit(n_v, u_eta) / u_exit_norm;
     }
     o_radiance.rgb = max(scattered() * factor, 0.0);

@@ -12,7 +12,7 @@ void main()
     vec3 n = normalize(v_normal), sum = vec3(0.0);
     vec3 v = normalize(u_eye.xyz - v_position * u_eye.w);
     n = dot(n, v) < 0.0 ? -n : n;
-    if (u_view >= 5) { // normals, charts
+    if (u_view == 5 || u_view == 6 || u_view == 8) { // normals, charts, values
         o_radiance = vec4(u_view == 5 ? 0.5 + 0.5 * n : vec3(0.5), 1.0);
         return;
     }

@@ -207,6 +207,32 @@ static double picture_difference(parian_renderer *gl, parian_renderer *cpu,
     return off / sum;
 }
 
+/* Drawing values before they are given is refused; then a colour for each texel, from its place. */
+static void paint_ramp(const parian_scene *scene, parian_renderer *gl, parian_renderer *cpu)
+{
+    const parian_settings settings = {.view = PARIAN_VIEW_VALUES};
+    const parian_draw_desc draw = {.width = 8, .height = 8, .framebuffer = UINT32_MAX};
+    const uint64_t count = parian_scene_get_info(scene).texel_count;
+    const uint32_t side = parian_scene_get_body(scene, 0).atlas_size;
+    uint32_t(*place)[2] = calloc(count, sizeof *place);
+    float(*value)[3] = calloc(count, sizeof *value);
+    const parian_texel_arrays arrays = {.place = place};
+    assert_non_null(place);
+    assert_non_null(value);
+    assert_int_equal(parian_renderer_set_settings(cpu, &settings), PARIAN_OK);
+    assert_int_equal(parian_renderer_draw(cpu, &draw), PARIAN_E_ARGUMENT);
+    assert_int_equal(parian_renderer_read_texels(cpu, &arrays), PARIAN_OK);
+    for (uint64_t t = 0; t < count; t++) {
+        assert_true(place[t][0] < side && place[t][1] < side);
+        value[t][0] = (float)place[t][0] / (float)side;
+        value[t][1] = (float)place[t][1] / (float)side;
+    }
+    assert_int_equal(parian_renderer_set_values(gl, (const float(*)[3])value), PARIAN_OK);
+    assert_int_equal(parian_renderer_set_values(cpu, (const float(*)[3])value), PARIAN_OK);
+    free(place);
+    free(value);
+}
+
 static void test_pictures(void **state)
 {
     const parian_env *env = test_env(0);
@@ -228,7 +254,8 @@ static void test_pictures(void **state)
                              .height = HEIGHT,
                              .exposure_auto = true,
                              .framebuffer = UINT32_MAX};
-    for (int view = 0; view <= PARIAN_VIEW_CHARTS; view++) {
+    paint_ramp(scene, gl, cpu);
+    for (int view = 0; view <= PARIAN_VIEW_VALUES; view++) {
         parian_settings settings = {.view = (parian_view_mode)view,
                                     .background = {0.01f, 0.02f, 0.03f}};
         assert_int_equal(parian_renderer_set_settings(gl, &settings), PARIAN_OK);

@@ -41,6 +41,18 @@ typedef struct parian_scene_info {
 } parian_scene_info;
 parian_scene_info parian_scene_get_info(const parian_scene *scene);
 
+/* One body, index below body_count. */
+typedef struct parian_scene_body {
+    const char *name, *medium_name;    /* live with the scene; may be empty */
+    double sigma_s_prime[3], sigma_a[3], eta; /* m^-1, m^-1, 1 */
+    uint32_t atlas_size, chart_count;  /* side of the atlas in texels */
+    uint32_t texel_count, vertex_count, triangle_count;
+    uint64_t factor_count;             /* throughput factors of the global part */
+    bool has_local, has_global;
+} parian_scene_body;
+/* Zeroed when there is no such body. */
+parian_scene_body parian_scene_get_body(const parian_scene *scene, uint32_t index);
+
 /* ---- renderer ---------------------------------------------------------------------------------- */
 typedef struct parian_renderer parian_renderer;
 
@@ -76,7 +88,9 @@ typedef enum parian_view_mode {
     PARIAN_VIEW_IRRADIANCE = 3, /* E on the surface, divided by pi */
     PARIAN_VIEW_OPAQUE = 4,   /* the same total albedo as a Lambertian surface, for comparison */
     PARIAN_VIEW_NORMALS = 5,
-    PARIAN_VIEW_CHARTS = 6
+    PARIAN_VIEW_CHARTS = 6,
+    PARIAN_VIEW_RADIOSITY = 7, /* B on the surface, divided by pi, before the surface texture */
+    PARIAN_VIEW_VALUES = 8     /* what parian_renderer_set_values gave */
 } parian_view_mode;
 
 typedef struct parian_settings { /* zero is default */
@@ -88,6 +102,11 @@ typedef struct parian_settings { /* zero is default */
     float background[3];   /* radiance behind everything */
 } parian_settings;
 parian_result parian_renderer_set_settings(parian_renderer *renderer, const parian_settings *settings);
+
+/* Values that PARIAN_VIEW_VALUES paints on the bodies, as linear colours without exposure and tone curve:
+ * [texel_count of the scene][3], bodies one after the other as in parian_texel_arrays; copied. Drawing that
+ * view without values is PARIAN_E_ARGUMENT. Errors: PARIAN_E_NOMEM, PARIAN_E_DEVICE. */
+parian_result parian_renderer_set_values(parian_renderer *renderer, const float (*value)[3]);
 
 /* Bring E and B up to date with lights and settings; does nothing when nothing changed. */
 parian_result parian_renderer_relight(parian_renderer *renderer);
@@ -120,6 +139,7 @@ typedef struct parian_texel_arrays {
     float (*position)[3];
     float (*normal)[3];
     float *area;
+    uint32_t (*place)[2];   /* column and row in the atlas of the body */
     float (*irradiance)[3]; /* E, transmitted, W m^-2 */
     float (*radiosity)[3];  /* B, W m^-2 */
     float (*radiosity_local)[3];
