@@ -14,6 +14,9 @@
 #include "core/memory.h"
 #include "tool/session.h"
 
+/* Say so from this share of the surface on. */
+static const double THIN_SHARE_MAX = 0.02;
+
 typedef struct body_job {
     const parian_bake_desc *desc;
     parian_source_scene *scene;
@@ -118,6 +121,23 @@ static parian_result step_plan(const parian_env *env, body_job *job)
     return r;
 }
 
+/* Say where the dipole does not hold: no setting of the bake mends that. */
+static parian_result step_thickness(const parian_env *env, body_job *job)
+{
+    parian_thickness_report *t = &job->report->thickness;
+    parian_result r = parian_stage_thickness(env, job->body, t);
+    if (r == PARIAN_OK && t->thin_share > THIN_SHARE_MAX) {
+        parian_log(env, PARIAN_LOG_INFO,
+                   "%.0f %% of the surface is thinner than %d mean free paths (%.3g mm in the "
+                   "clearest channel): %s",
+                   100 * t->thin_share, PARIAN_THIN_FLIGHTS, 1e3 * t->flight_m,
+                   job->desc->bssrdf == PARIAN_BSSRDF_DIPOLE
+                       ? "the dipole by distance errs there; --bssrdf dipole-flux errs less"
+                       : "no diffuse BSSRDF holds well there");
+    }
+    return r;
+}
+
 static parian_result step_detail(const parian_env *env, body_job *job)
 {
     const parian_source_scene *scene = job->scene;
@@ -157,9 +177,9 @@ static const struct {
     body_step run;
 } STEPS[] = {{"surface", step_surface}, {"transfer mesh", step_transfer_mesh},
              {"atlas", step_atlas},     {"texels", step_texels},
-             {"plan", step_plan},       {"detail", step_detail},
-             {"global", step_global},   {"blend", step_blend},
-             {"local", step_local}};
+             {"plan", step_plan},       {"thickness", step_thickness},
+             {"detail", step_detail},   {"global", step_global},
+             {"blend", step_blend},     {"local", step_local}};
 
 static void init_body(const parian_bake_desc *desc, const parian_source_part *part,
                       const parian_medium *medium, parian_body *body)

@@ -108,6 +108,16 @@ static void add_plan(cJSON *parent, const parian_plan *p)
     cJSON_AddNumberToObject(o, "error_without_global", p->error_without_global);
 }
 
+/* Percentiles that are infinite, where rays leave by an open rim, are null. */
+static void add_thickness(cJSON *parent, const parian_thickness_report *t)
+{
+    cJSON *o = cJSON_AddObjectToObject(parent, "thickness");
+    cJSON_AddNumberToObject(o, "thin_m", t->thin_m);
+    cJSON_AddNumberToObject(o, "median_m", t->median_m);
+    cJSON_AddNumberToObject(o, "mean_free_path_m", t->flight_m);
+    cJSON_AddNumberToObject(o, "thin_share", t->thin_share);
+}
+
 static void add_transport(cJSON *parent, const parian_body_report *b)
 {
     cJSON *o = cJSON_AddObjectToObject(parent, "global");
@@ -146,6 +156,7 @@ static cJSON *body_json(const parian_body_report *b)
     add_transfer_mesh(o, &b->transfer_mesh);
     add_atlas(o, b);
     add_plan(o, &b->plan);
+    add_thickness(o, &b->thickness);
     add_transport(o, b);
     add_stages(o, b);
     return o;

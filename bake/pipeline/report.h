@@ -8,6 +8,7 @@
 
 #include "bake/stages/atlas.h"
 #include "bake/stages/surface.h"
+#include "bake/stages/thickness.h"
 #include "bake/stages/transfer_mesh.h"
 #include "bake/stages/transport.h"
 
@@ -26,6 +27,7 @@ typedef struct parian_body_report {
     parian_transfer_mesh_report transfer_mesh;
     parian_atlas_report atlas;
     parian_plan plan;
+    parian_thickness_report thickness;
     parian_global_report global;
     parian_blend_report blend;
     uint32_t texel_count, border_count, gutter_count;
