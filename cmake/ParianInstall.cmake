@@ -9,3 +9,6 @@ configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/ParianConfig.cmake.in
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/ParianConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/ParianConfig.cmake" "${PROJECT_BINARY_DIR}/ParianConfigVersion.cmake"
   DESTINATION ${package_dir})
+
+include(ParianManuals)
+parian_manuals(parian-bake parian-view parian-info parian-measure parian-models parian-montage)

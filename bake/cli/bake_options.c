@@ -28,8 +28,10 @@ static const char SUMMARY[] =
     "Turns a model and a measured medium into a .parian asset that the runtime relights.\n"
     "INPUT is .glb .gltf .obj .ply .stl or .off. In a glTF scene every node whose material\n"
     "scatters is a body; the other meshes are its diffuse surroundings. Bodies beyond four\n"
-    "share the vertices and texels of four.\n"
-    "parian-bake reference computes ground truth instead; see parian-bake reference --help.";
+    "share the vertices and texels of four.";
+
+static const parian_subcommand COMMANDS[] = {
+    {"reference", "ground truth instead: a BSSRDF integrated over the surface, or path tracing"}};
 
 static const char EPILOGUE[] =
     "Examples:\n"
@@ -43,7 +45,7 @@ static parian_result parse_table(int argc, char **argv, raw_options *raw,
     const parian_option table[] = {
         {"-o", "--output", PARIAN_OPTION_STRING, &raw->output, "OUT.parian", "The asset to write.",
          0, 0, NULL, NULL},
-        {"--material", NULL, PARIAN_OPTION_LIST, &options->materials, "NAME",
+        {"--material", NULL, PARIAN_OPTION_LIST, &options->materials, "NAME|FILE",
          "A preset (see --list-materials; case, spaces, - and _ do not matter), a FILE.json, or "
          "MESHNAME=NAME "
          "for one glTF mesh, node or material. Default: the glTF's own volume extensions, else "
@@ -130,7 +132,9 @@ static parian_result parse_table(int argc, char **argv, raw_options *raw,
                                     .summary = SUMMARY,
                                     .epilogue = EPILOGUE,
                                     .options = table,
-                                    .option_count = sizeof table / sizeof *table};
+                                    .option_count = sizeof table / sizeof *table,
+                                    .commands = COMMANDS,
+                                    .command_count = sizeof COMMANDS / sizeof *COMMANDS};
     return parian_options_parse(&command, &options->common, inputs, argc, argv, 1);
 }
 

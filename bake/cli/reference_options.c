@@ -58,7 +58,7 @@ static parian_result parse_table(int argc, char **argv, raw_options *raw,
 {
     const parian_option table[] = {
         PARIAN_GROUP_ROW("Scene"),
-        {"--material", NULL, PARIAN_OPTION_LIST, &o->materials, "NAME",
+        {"--material", NULL, PARIAN_OPTION_LIST, &o->materials, "NAME|FILE",
          "As in a bake: a preset, a FILE.json, or MESHNAME=NAME. Default: the model's own, else "
          "marble, with a warning.",
          0, 0, NULL, NULL},

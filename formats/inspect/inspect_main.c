@@ -14,29 +14,31 @@ typedef parian_result (*asset_command)(const parian_env *env, const inspect_opti
                                        const char *path);
 
 typedef struct command_entry {
-    const char *name, *tool, *usage, *summary, *epilogue;
+    const char *name, *brief, *tool, *usage, *summary, *epilogue;
     asset_command run; /* NULL: compare */
     bool takes_json, takes_chunk, takes_tolerance, one_asset;
 } command_entry;
 
 static const command_entry commands[] = {
-    {"info", "parian-info info", "ASSET... [--json]",
+    {"info", "what an asset holds", "parian-info info", "ASSET... [--json]",
      "Prints what an asset holds: bodies with their media, the mean free path against extent and "
      "texel size, counts, bytes by part, estimated GPU memory, the plan, provenance.",
      NULL, inspect_info, true, false, false, false},
-    {"chunks", "parian-info chunks", "ASSET... [--json]",
+    {"chunks", "its arrays", "parian-info chunks", "ASSET... [--json]",
      "Lists the arrays of an asset: name, element, shape, codec, bytes.", NULL, inspect_chunks,
      true, false, false, false},
-    {"validate", "parian-info validate", "ASSET... [--json]",
+    {"validate", "whether every byte follows the rules of the format", "parian-info validate",
+     "ASSET... [--json]",
      "Checks every byte of an asset against the rules of the format. A violation ends with exit "
      "status 3 and one "
      "line that says which rule, what was found and where.",
      NULL, inspect_validate, true, false, false, false},
-    {"export", "parian-info export", "ASSET --chunk NAME -o FILE.npy|FILE.csv",
-     "Writes one array of an asset to a file.",
+    {"export", "one array as .npy or .csv", "parian-info export",
+     "ASSET --chunk NAME -o FILE.npy|FILE.csv", "Writes one array of an asset to a file.",
      "Example:\n  parian-info export bunny.parian --chunk body0/texel.area -o area.npy",
      inspect_export, false, true, false, true},
-    {"compare", "parian-info compare", "A B [--tolerance T] [--json]",
+    {"compare", "whether two assets hold the same", "parian-info compare",
+     "A B [--tolerance T] [--json]",
      "Compares two assets array by array. Exit status 7 when they differ.",
      "Indices are compared exactly. With a tolerance, texts (names, plan, provenance) do not "
      "count.",
@@ -106,8 +108,12 @@ static parian_result parse_command(const command_entry *entry, int argc, char **
             .help = "Values may differ by T times the array's largest absolute value (0: "
                     "not at all)."};
     }
-    parian_command command = {entry->tool,     entry->usage, entry->summary,
-                              entry->epilogue, table,        count};
+    const parian_command command = {.tool = entry->tool,
+                                    .usage = entry->usage,
+                                    .summary = entry->summary,
+                                    .epilogue = entry->epilogue,
+                                    .options = table,
+                                    .option_count = count};
     return parian_options_parse(&command, &options->common, &options->assets, argc, argv, 1);
 }
 
@@ -190,22 +196,18 @@ static int run_command(const command_entry *entry, int argc, char **argv)
 /* Without a command: --help and --version, or one line that says what is wrong. */
 static int run_without_command(int argc, char **argv)
 {
-    static const char epilogue[] =
-        "Commands:\n"
-        "  info      what an asset holds\n"
-        "  chunks    its arrays\n"
-        "  validate  whether every byte follows the rules of the format\n"
-        "  export    one array as .npy or .csv\n"
-        "  compare   whether two assets hold the same\n"
-        "parian-info COMMAND --help tells more.";
     static parian_common_options common;
     static parian_string_list words;
-    parian_command command = {"parian-info",
-                              "COMMAND ASSET... [options]",
-                              "Inspects, validates, exports and compares .parian assets.",
-                              epilogue,
-                              NULL,
-                              0};
+    parian_subcommand list[COMMAND_COUNT];
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
+        list[i] = (parian_subcommand){commands[i].name, commands[i].brief};
+    }
+    const parian_command command = {.tool = "parian-info",
+                                    .usage = "COMMAND ASSET... [options]",
+                                    .summary =
+                                        "Inspects, validates, exports and compares .parian assets.",
+                                    .commands = list,
+                                    .command_count = COMMAND_COUNT};
     parian_result result = parian_options_parse(&command, &common, &words, argc, argv, 1);
     if (result != PARIAN_OK) {
         return parian_result_exit_status(result);

@@ -46,7 +46,8 @@ void parian_options_common_rows(parian_common_options *common,
          .alias = "-h",
          .kind = PARIAN_OPTION_FLAG,
          .value = &common->help,
-         .help = "Print this text."},
+         .help = "Print this text; --help=man, =bash, =zsh and =fish print a manual page or "
+                 "completion."},
         {.name = "--version",
          .kind = PARIAN_OPTION_FLAG,
          .value = &common->version,
@@ -288,6 +289,19 @@ static parian_result set_value(const parse_state *state, const parian_option *op
     return PARIAN_E_ARGUMENT;
 }
 
+static const char *const help_forms[] = {"text", "man", "bash", "zsh", "fish", "commands"};
+
+static parian_result set_help_form(const parse_state *state, const char *text)
+{
+    for (size_t i = 0; i < sizeof help_forms / sizeof *help_forms; i++) {
+        if (strcmp(help_forms[i], text) == 0) {
+            state->common_values->help_form = (parian_help_form)i;
+            return PARIAN_OK;
+        }
+    }
+    return refuse(state, PARIAN_E_ARGUMENT, "--help: '%s' is not one of man|bash|zsh|fish", text);
+}
+
 /* One option at argv[*index]; advances over its value. */
 static parian_result parse_option(const parse_state *state, int argc, char **argv, int *index)
 {
@@ -305,6 +319,10 @@ static parian_result parse_option(const parse_state *state, int argc, char **arg
     }
     if (option->given) {
         *option->given = true;
+    }
+    if (equals && option->value == &state->common_values->help) {
+        state->common_values->help = true;
+        return set_help_form(state, value);
     }
     if (option->kind == PARIAN_OPTION_FLAG) {
         *(bool *)option->value = true;
@@ -332,11 +350,36 @@ static parian_result print_version(const parse_state *state)
     return fflush(stdout) == 0 ? PARIAN_OK : PARIAN_E_IO;
 }
 
+static parian_result print_commands(const parian_command *command)
+{
+    for (size_t i = 0; i < command->command_count; i++) {
+        puts(command->commands[i].name);
+    }
+    return parian_options_end_output();
+}
+
+static parian_result print_form(const parse_state *state)
+{
+    switch (state->common_values->help_form) {
+    case PARIAN_HELP_MAN:
+        return parian_options_print_man(state->command, state->common);
+    case PARIAN_HELP_BASH:
+        return parian_options_print_bash(state->command, state->common);
+    case PARIAN_HELP_ZSH:
+        return parian_options_print_zsh(state->command, state->common);
+    case PARIAN_HELP_FISH:
+        return parian_options_print_fish(state->command, state->common);
+    case PARIAN_HELP_COMMANDS:
+        return print_commands(state->command);
+    case PARIAN_HELP_TEXT:
+        break;
+    }
+    return parian_options_print_help(state->command, state->common);
+}
+
 static parian_result print_and_check(const parse_state *state)
 {
-    parian_result result = state->common_values->help
-                               ? parian_options_print_help(state->command, state->common)
-                               : print_version(state);
+    parian_result result = state->common_values->help ? print_form(state) : print_version(state);
     if (result != PARIAN_OK) {
         fprintf(stderr, "%s: error: cannot write to stdout: %s\n", state->command->tool,
                 strerror(errno));

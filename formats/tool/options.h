@@ -1,4 +1,4 @@
-/* options.h - one table of options per tool: parsing, --help, and later man pages and completion.
+/* options.h - one table of options per tool: parsing, --help, man pages and completion.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -54,26 +54,45 @@ typedef struct parian_option {
         .name = (heading), .kind = PARIAN_OPTION_GROUP                                             \
     }
 
+/* What may follow the name of a tool that has several commands. */
+typedef struct parian_subcommand {
+    const char *name; /* "validate" */
+    const char *help; /* what it does, a few words */
+} parian_subcommand;
+
 typedef struct parian_command {
-    const char *tool;     /* "parian-bake" */
+    const char *tool;     /* "parian-bake", or with a command: "parian-info validate" */
     const char *usage;    /* "INPUT -o OUT.parian [options]" */
     const char *summary;  /* what it does, a few lines */
     const char *epilogue; /* examples; may be NULL */
     const parian_option *options;
     size_t option_count;
+    const parian_subcommand *commands; /* of the tool itself; NULL: it has none */
+    size_t command_count;
 } parian_command;
+
+/* What --help prints: --help, --help=man and so on. */
+typedef enum parian_help_form {
+    PARIAN_HELP_TEXT,
+    PARIAN_HELP_MAN,  /* a manual page for man(1) */
+    PARIAN_HELP_BASH, /* completion; the parts of a tool and of its commands make one file */
+    PARIAN_HELP_ZSH,
+    PARIAN_HELP_FISH,
+    PARIAN_HELP_COMMANDS /* the names of the tool's commands, a line each */
+} parian_help_form;
 
 /* The options that every tool has; they are parsed and printed with those of the command. */
 typedef struct parian_common_options {
     bool quiet, verbose, help, version;
     unsigned threads; /* 0: all */
     int progress;     /* auto, bar, json, none */
+    parian_help_form help_form;
 } parian_common_options;
 
 /* Parse argv[first..argc). Positional arguments go to `positional`. "--name=value" works too; "--"
  * ends options; "-" is positional. On a mistake prints one line to stderr (what, and "see TOOL
- * --help") and returns PARIAN_E_ARGUMENT or, for LATER, PARIAN_E_UNSUPPORTED. --help and --version
- * print to stdout and set common->help or ->version: the caller then exits with 0. */
+ * --help") and returns PARIAN_E_ARGUMENT or, for LATER, PARIAN_E_UNSUPPORTED. --help[=FORM] and
+ * --version print to stdout and set common->help or ->version: the caller then exits with 0. */
 parian_result parian_options_parse(const parian_command *command, parian_common_options *common,
                                    parian_string_list *positional, int argc, char **argv,
                                    int first);

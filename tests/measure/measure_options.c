@@ -25,7 +25,7 @@ static const char EPILOGUE[] =
     "Truth is taken at texels of the asset chosen evenly by area, on the surface of the model "
     "where INPUT\n"
     "is one, else on the asset's own. Bakes and truths are kept by content in the cache.\n"
-    "`parian-measure hard-cases -o DIR` runs the table of hard cases.\n\n"
+    "\n"
     "Examples:\n"
     "  parian-measure bunny.ply --scale 50mm --material marble --lights studio.json -o measured\n"
     "  parian-measure bunny.ply --scale 50mm --bake '--quality preview' --bake '--form paper' "
@@ -34,6 +34,9 @@ static const char EPILOGUE[] =
     "  parian-measure bunny.parian --lights a.json --lights b.json --reference path "
     "--standard-error 0.02\n"
     "      --receivers 200 -o measured";
+
+static const parian_subcommand COMMANDS[] = {
+    {"hard-cases", "bakes and measures the cases that break naive code, a verdict for each"}};
 
 static parian_result parse_table(int argc, char **argv, parian_measure_options *o)
 {
@@ -103,7 +106,9 @@ static parian_result parse_table(int argc, char **argv, parian_measure_options *
                                     .summary = SUMMARY,
                                     .epilogue = EPILOGUE,
                                     .options = table,
-                                    .option_count = sizeof table / sizeof *table};
+                                    .option_count = sizeof table / sizeof *table,
+                                    .commands = COMMANDS,
+                                    .command_count = sizeof COMMANDS / sizeof *COMMANDS};
     return parian_options_parse(&command, &o->common, &o->inputs, argc, argv, 1);
 }
 

@@ -70,9 +70,15 @@ static parian_result parse(values *v, const char *const *words)
          0, 0, "dipole|dipole-flux", NULL},
         {"--max-error", NULL, PARIAN_OPTION_LATER, NULL, NULL, NULL, 0, 0, NULL, NULL},
     };
-    const parian_command command = {"parian-test",    "INPUT -o FILE",
-                                    "Tests options.", "Examples:\n  parian-test x\n",
-                                    options,          sizeof options / sizeof options[0]};
+    static const parian_subcommand commands[] = {{"sub", "what sub does"}};
+    const parian_command command = {.tool = "parian-test",
+                                    .usage = "INPUT -o FILE",
+                                    .summary = "Tests options. And more.",
+                                    .epilogue = "Examples:\n  parian-test x\n",
+                                    .options = options,
+                                    .option_count = sizeof options / sizeof options[0],
+                                    .commands = commands,
+                                    .command_count = 1};
     char *argv[32] = {(char *)(uintptr_t) "parian-test"};
     const char *out = test_scratch("out.txt"), *err = test_scratch("err.txt");
     int argc = 1;
@@ -200,6 +206,39 @@ static void test_help_fits_and_hides(void **state)
     assert_string_equal(v.out, "parian-test " PARIAN_VERSION "\n");
 }
 
+/* Each form of --help holds every option that is built, and none that is not. */
+static void test_forms_of_help(void **state)
+{
+    static const struct {
+        const char *form, *expected[4];
+    } cases[] = {
+        {"--help=man",
+         {".TH PARIAN\\-TEST 1 \"\"", "parian\\-test \\- tests options\n",
+          "\\fB\\-o\\fR, \\fB\\-\\-output\\fR \\fIFILE\\fR", "\\fBparian\\-test\\-sub\\fR(1)"}},
+        {"--help=bash",
+         {"-o | --output) mapfile -t COMPREPLY < <(compgen -f", "compgen -W 'dipole dipole-flux'",
+          "complete -o default -F _parian_test", "sub) command=_"}},
+        {"--help=zsh", {"#compdef parian-test", "--bssrdf=[", ":(dipole dipole-flux)'", "_files"}},
+        {"--help=fish",
+         {"complete -c parian-test", "-x -a 'dipole dipole-flux'", "-r -F",
+          "-a sub -d 'what sub does'"}},
+        {"--help=commands", {"sub\n", "sub\n", "sub\n", "sub\n"}}};
+    values v;
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_int_equal(PARSE(&v, cases[i].form), PARIAN_OK);
+        for (int k = 0; k < 4; k++) {
+            if (!strstr(v.out, cases[i].expected[k])) {
+                fail_msg("%s lacks '%s'", cases[i].form, cases[i].expected[k]);
+            }
+        }
+        assert_null(strstr(v.out, "max-error"));
+        assert_null(strstr(v.out, "max\\-error"));
+    }
+    assert_int_equal(PARSE(&v, "--help=html"), PARIAN_E_ARGUMENT);
+    assert_non_null(strstr(v.err, "man|bash|zsh|fish"));
+}
+
 static void test_too_many(void **state)
 {
     static const char *words[PARIAN_STRING_LIST_MAX + 2];
@@ -228,6 +267,7 @@ int main(void)
         cmocka_unit_test(test_mistakes),
         cmocka_unit_test(test_later_is_unsupported),
         cmocka_unit_test(test_help_fits_and_hides),
+        cmocka_unit_test(test_forms_of_help),
         cmocka_unit_test(test_too_many),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
