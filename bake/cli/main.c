@@ -10,7 +10,7 @@
 
 #include "bake/cli/bake_options.h"
 #include "bake/cli/reference_command.h"
-#include "bake/stages/media.h"
+#include "tool/media_file.h"
 #include "tool/session.h"
 
 static int list_materials(void)

@@ -164,7 +164,7 @@ static parian_result step_global(const parian_env *env, body_job *job)
 
 static parian_result step_blend(const parian_env *env, body_job *job)
 {
-    return parian_stage_blend(env, job->body, &job->report->blend);
+    return parian_blend_make(env, job->body, &job->report->blend);
 }
 
 static parian_result step_local(const parian_env *env, body_job *job)

@@ -8,6 +8,7 @@
 #include "bake/pipeline/bake.h"
 #include "bake/stages/media.h"
 #include "core/memory.h"
+#include "tool/media_file.h"
 
 /* One --material argument: mesh is empty where it holds for every body. */
 typedef struct material_choice {
@@ -36,7 +37,7 @@ parian_result parian_find_medium(const parian_env *env, const char *text, parian
             text);
     }
     *medium = *preset;
-    return parian_media_check(env, medium);
+    return parian_medium_check(env, medium);
 }
 
 static parian_result parse_choice(const parian_env *env, const char *text, material_choice *choice)

@@ -34,7 +34,7 @@ typedef struct global_job {
 
 static uint32_t rows_of_block(const global_job *job, uint32_t block)
 {
-    uint32_t first = block * ROWS_PER_BLOCK, count = job->maker.body->vertex_count - first;
+    uint32_t first = block * ROWS_PER_BLOCK, count = job->maker.factors.body->vertex_count - first;
     return count < ROWS_PER_BLOCK ? count : ROWS_PER_BLOCK;
 }
 
@@ -58,7 +58,7 @@ static void choose_block(void *context, size_t index)
     for (uint32_t i = 0; result == PARIAN_OK && i < rows_of_block(job, number); i++) {
         uint32_t v = number * ROWS_PER_BLOCK + i;
         parian_row_choice choice;
-        parian_row_compute(&job->maker, v, &work);
+        parian_factor_row(&job->maker.factors, v, &work.row);
         parian_row_choose(&job->maker, &work, &choice);
         result =
             parian_row_append_runs(job->env, &job->maker, &work, &block->runs, &block->factors);
@@ -80,7 +80,7 @@ static void code_block(void *context, size_t index)
     parian_result result = parian_row_work_make(job->env, &job->maker, &work);
     for (uint32_t i = 0; result == PARIAN_OK && i < rows_of_block(job, number); i++) {
         uint32_t v = number * ROWS_PER_BLOCK + i;
-        parian_row_compute(&job->maker, v, &work);
+        parian_factor_row(&job->maker.factors, v, &work.row);
         parian_row_code(&work, job->op, v);
     }
     parian_row_work_free(job->env, &work);
@@ -167,7 +167,7 @@ static void fill_report(const global_job *job, parian_global_report *report)
 static parian_result make_operator(global_job *job)
 {
     parian_operator *op = job->op;
-    uint32_t vertices = job->maker.body->vertex_count;
+    uint32_t vertices = job->maker.factors.body->vertex_count;
     job->block_count = (vertices + ROWS_PER_BLOCK - 1) / ROWS_PER_BLOCK;
     op->source_register = 0;
     op->target_register = 1;

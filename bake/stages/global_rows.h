@@ -1,4 +1,4 @@
-/* global_rows.h - one row of throughput factors: computed, chosen from, coded.
+/* global_rows.h - one row of throughput factors: chosen from, coded.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -7,15 +7,12 @@
 
 #include <stdatomic.h>
 
-#include "bake/stages/transport_parts.h"
+#include "bake/stages/transport.h"
+#include "core/factor_row.h"
 
 /* What every row needs. */
 typedef struct parian_row_maker {
-    const parian_body *body;
-    parian_transport_model model;
-    parian_vertex_frame frame;
-    float (*total)[3]; /* row sums that the diagonal brings about; NULL: the diagonal is zero */
-    float (*cap)[3];   /* mean of R_d over a disc of the vertex's area; NULL without prefilter */
+    parian_factor_maker factors;
     double threshold, threshold_absolute; /* as parian_global_desc, resolved; below 0: keep all */
 } parian_row_maker;
 
@@ -50,8 +47,6 @@ typedef struct parian_run_list {
 } parian_run_list;
 void parian_run_list_free(const parian_env *env, parian_run_list *list);
 
-/* Fill work->row with the factors of receiver v. */
-void parian_row_compute(const parian_row_maker *maker, uint32_t v, parian_row_work *work);
 /* Mark the factors that stay (work->keep), small gaps filled. */
 void parian_row_choose(const parian_row_maker *maker, parian_row_work *work,
                        parian_row_choice *choice);

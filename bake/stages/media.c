@@ -1,10 +1,9 @@
-/* media.c - looks presets up, turns glTF volume materials into media, checks media.
+/* media.c - turns glTF volume materials into media.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "bake/stages/media.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,41 +11,8 @@
 #include "core/memory.h"
 
 static const char channel_name[PARIAN_CHANNELS] = {'r', 'g', 'b'};
-static const double g_cap = 0.995;
-
 /* An attenuation colour is 8 bits at best: what it calls 0 or 1 is nearer than this. */
 static const double color_margin = 1.0 / 512;
-
-static char next_letter(const char **at)
-{
-    while (**at == ' ' || **at == '-' || **at == '_') {
-        (*at)++;
-    }
-    char letter = (char)tolower((unsigned char)**at);
-    *at += letter != '\0';
-    return letter;
-}
-
-static bool same_name(const char *a, const char *b)
-{
-    for (;;) {
-        char x = next_letter(&a), y = next_letter(&b);
-        if (x != y || x == '\0') {
-            return x == y;
-        }
-    }
-}
-
-const parian_medium *parian_media_find(const char *name)
-{
-    for (uint32_t i = 0; name && i < parian_media_preset_count(); i++) {
-        const parian_medium *preset = parian_media_preset(i);
-        if (same_name(name, preset->name)) {
-            return preset;
-        }
-    }
-    return NULL;
-}
 
 /* Extinction of a channel from its colour after the attenuation distance. */
 static parian_result find_extinction(const parian_env *env, const parian_source_material *material,
@@ -131,61 +97,11 @@ parian_result parian_media_from_material(const parian_env *env,
         made.sigma_a[c] = (1 - albedo) * sigma_t;
         made.g[c] = g;
     }
-    if (result == PARIAN_OK && parian_media_check(env, &made) != PARIAN_OK) {
+    if (result == PARIAN_OK && parian_medium_check(env, &made) != PARIAN_OK) {
         result = PARIAN_E_FORMAT;
     }
     if (result == PARIAN_OK) {
         *medium = made;
     }
     return result;
-}
-
-static parian_result check_channel(const parian_env *env, parian_medium *medium, int c)
-{
-    double s = medium->sigma_s_prime[c], a = medium->sigma_a[c], g = medium->g[c];
-    if (!(s >= 0) || !isfinite(s) || !(a >= 0) || !isfinite(a)) {
-        return parian_fail(env, PARIAN_E_ARGUMENT,
-                           "medium '%s': sigma_%s %c is %g per m, expected a finite number >= 0",
-                           medium->name, s >= 0 && isfinite(s) ? "a" : "s_prime", channel_name[c],
-                           s >= 0 && isfinite(s) ? a : s);
-    }
-    if (!(fabs(g) < 1)) {
-        return parian_fail(env, PARIAN_E_ARGUMENT,
-                           "medium '%s': g %c is %g, expected -1 to 1, both excluded", medium->name,
-                           channel_name[c], g);
-    }
-    if (s + a == 0) {
-        return parian_fail(
-            env, PARIAN_E_ARGUMENT,
-            "medium '%s': channel %c neither scatters nor absorbs, expected one of them",
-            medium->name, channel_name[c]);
-    }
-    if (fabs(g) > g_cap) {
-        parian_log(env, PARIAN_LOG_WARNING, "medium '%s': g %c of %g is capped at %g", medium->name,
-                   channel_name[c], g, copysign(g_cap, g));
-        medium->g[c] = copysign(g_cap, g);
-    }
-    return PARIAN_OK;
-}
-
-parian_result parian_media_check(const parian_env *env, parian_medium *medium)
-{
-    double scattering = 0;
-    for (int c = 0; c < PARIAN_CHANNELS; c++) {
-        parian_result result = check_channel(env, medium, c);
-        if (result != PARIAN_OK) {
-            return result;
-        }
-        scattering += medium->sigma_s_prime[c];
-    }
-    if (scattering == 0) {
-        return parian_fail(env, PARIAN_E_ARGUMENT,
-                           "medium '%s' scatters in no channel: it is no translucent medium",
-                           medium->name);
-    }
-    if (!(medium->eta >= 1 && medium->eta <= 4)) {
-        return parian_fail(env, PARIAN_E_ARGUMENT, "medium '%s': eta is %g, expected 1 to 4",
-                           medium->name, medium->eta);
-    }
-    return PARIAN_OK;
 }

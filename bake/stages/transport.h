@@ -1,12 +1,14 @@
-/* transport.h - the plan, the global throughput factors, the blending weights and the local kernels.
+/* transport.h - the plan, the global throughput factors, the blending weights and the local
+ * kernels.
  *
- * The stages run in the order plan, global, blend, local; plan.c, global.c, blend.c, local.c.
+ * The stages run in the order plan, global, blend, local; plan.c, global.c, core/blend.c, local.c.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef PARIAN_BAKE_TRANSPORT_H
 #define PARIAN_BAKE_TRANSPORT_H
 
+#include "core/blend.h"
 #include "core/body.h"
 
 typedef struct parian_plan_desc {
@@ -23,34 +25,28 @@ typedef struct parian_plan {
     double error_without_local, error_without_global; /* estimated relative change of B */
 } parian_plan;
 
-/* Decide which parts this body needs; sets body->local_form, has_global, split_radius_m. A part is left
- * out only when the change of B is estimated at 0.5 % at most. Needs surface, atlas and texels. */
-parian_result parian_stage_plan(const parian_env *env, const parian_plan_desc *desc, parian_body *body,
-                                parian_plan *plan);
+/* Decide which parts this body needs; sets body->local_form, has_global, split_radius_m. A part is
+ * left out only when the change of B is estimated at 0.5 % at most. Needs surface, atlas and
+ * texels. */
+parian_result parian_stage_plan(const parian_env *env, const parian_plan_desc *desc,
+                                parian_body *body, parian_plan *plan);
 
 typedef struct parian_global_desc {
-    double threshold;          /* share of a row that may be dropped; 0 takes 0.002; negative: nothing */
-    double threshold_absolute; /* > 0: drop factors (dimensionless, F times A/3) below it, as the paper */
+    double threshold; /* share of a row that may be dropped; 0 takes 0.002; negative: nothing */
+    double threshold_absolute; /* > 0: drop factors (dimensionless, F times A/3) below it, as the
+                                  paper */
 } parian_global_desc;
 
 typedef struct parian_global_report {
-    uint64_t factor_count;   /* stored, per channel */
-    double kept_share;       /* of vertex_count^2 */
+    uint64_t factor_count;      /* stored, per channel */
+    double kept_share;          /* of vertex_count^2 */
     double lost_mean, lost_max; /* share of a row's sum that was dropped, over rows and channels */
     double row_sum_min[3], row_sum_max[3];
 } parian_global_report;
 
 /* Fill operators[0]. Does nothing when the plan needs no global part. */
-parian_result parian_stage_global(const parian_env *env, const parian_global_desc *desc, parian_body *body,
-                                  parian_global_report *report);
-
-typedef struct parian_blend_report {
-    uint32_t fitted, fallback; /* texels with the constrained fit, and with its fallback */
-    double energy_error_max;   /* of an impulse, after the fit, estimated */
-} parian_blend_report;
-
-/* Fill blend_weight (forms REBUILT, F16, U8). */
-parian_result parian_stage_blend(const parian_env *env, parian_body *body, parian_blend_report *report);
+parian_result parian_stage_global(const parian_env *env, const parian_global_desc *desc,
+                                  parian_body *body, parian_global_report *report);
 
 /* Fill the stored kernels (forms F16, U8); nothing to do for the others. */
 parian_result parian_stage_local(const parian_env *env, parian_body *body);

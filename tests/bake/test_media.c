@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "bake/stages/media.h"
+#include "tool/media_file.h"
 
 static void assert_near(double found, double expected, double relative)
 {
@@ -24,7 +25,7 @@ static void find_presets(void **state)
     for (uint32_t i = 0; i < parian_media_preset_count(); i++) {
         parian_medium medium = *parian_media_preset(i);
         assert_ptr_equal(parian_media_find(medium.name), parian_media_preset(i));
-        assert_int_equal(parian_media_check(NULL, &medium), PARIAN_OK);
+        assert_int_equal(parian_medium_check(NULL, &medium), PARIAN_OK);
         assert_true(strlen(medium.source) > 10);
     }
     assert_null(parian_media_preset(51));
@@ -182,14 +183,14 @@ static void check_media(void **state)
     (void)state;
     parian_medium m = *parian_media_find("lowfat milk");
     m.g[1] = 0.999;
-    assert_int_equal(parian_media_check(NULL, &m), PARIAN_OK);
+    assert_int_equal(parian_medium_check(NULL, &m), PARIAN_OK);
     assert_near(m.g[1], 0.995, 0);
     m.sigma_a[0] = NAN;
-    assert_int_equal(parian_media_check(NULL, &m), PARIAN_E_ARGUMENT);
+    assert_int_equal(parian_medium_check(NULL, &m), PARIAN_E_ARGUMENT);
     m = *parian_media_find("merlot"); /* scatters in red alone */
-    assert_int_equal(parian_media_check(NULL, &m), PARIAN_OK);
+    assert_int_equal(parian_medium_check(NULL, &m), PARIAN_OK);
     m.sigma_s_prime[0] = 0;
-    assert_int_equal(parian_media_check(NULL, &m), PARIAN_E_ARGUMENT);
+    assert_int_equal(parian_medium_check(NULL, &m), PARIAN_E_ARGUMENT);
 }
 
 int main(void)

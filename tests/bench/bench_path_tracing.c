@@ -13,8 +13,8 @@
 #include <stdlib.h>
 
 #include "bake/reference/reference_scene.h"
-#include "bake/stages/media.h"
 #include "support/path_case.h"
+#include "tool/media_file.h"
 #include "tool/session.h"
 
 enum { RECEIVERS = 1000 };

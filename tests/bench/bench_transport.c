@@ -194,7 +194,7 @@ int main(int argc, char **argv)
     at[1] = parian_seconds();
     assert_int_equal(parian_stage_global(env, NULL, &body, &global), PARIAN_OK);
     at[2] = parian_seconds();
-    assert_int_equal(parian_stage_blend(env, &body, &blend), PARIAN_OK);
+    assert_int_equal(parian_blend_make(env, &body, &blend), PARIAN_OK);
     at[3] = parian_seconds();
     assert_int_equal(parian_stage_local(env, &body), PARIAN_OK);
     at[4] = parian_seconds();

@@ -37,7 +37,7 @@ static void bake_transport(const parian_env *env, const parian_plan_desc *plan_d
 {
     assert_int_equal(parian_stage_plan(env, plan_desc, body, plan), PARIAN_OK);
     assert_int_equal(parian_stage_global(env, NULL, body, NULL), PARIAN_OK);
-    assert_int_equal(parian_stage_blend(env, body, NULL), PARIAN_OK);
+    assert_int_equal(parian_blend_make(env, body, NULL), PARIAN_OK);
     assert_int_equal(parian_stage_local(env, body), PARIAN_OK);
     assert_int_equal(parian_kernels_build(env, body, kernels), PARIAN_OK);
 }

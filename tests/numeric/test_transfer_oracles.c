@@ -7,8 +7,9 @@
  */
 #include "support/test_support.h"
 
-#include "bake/stages/blend_solve.h"
-#include "bake/stages/transport_parts.h"
+#include "bake/stages/transport.h"
+#include "core/blend_solve.h"
+#include "core/vertex_frame.h"
 #include "core/fresnel.h"
 #include "core/near_factors.h"
 #include <stdlib.h>
@@ -339,7 +340,7 @@ static void bake_plane(parian_body *body, double texel, bool paper)
     body->paper_form = paper;
     body->local_form = PARIAN_LOCAL_REBUILT;
     bake_global(body, 0);
-    assert_int_equal(parian_stage_blend(env, body, NULL), PARIAN_OK);
+    assert_int_equal(parian_blend_make(env, body, NULL), PARIAN_OK);
 }
 
 /* L-7: the response to one lit texel is R_d inside its window (the stored half's 2^-11, and the

@@ -1,19 +1,19 @@
-/* global_totals.c - the whole energy that R_d carries to, or from, each vertex, by quadrature on
+/* vertex_totals.c - the whole energy that R_d carries to, or from, each vertex, by quadrature on
  * the surface.
  *
  * The hats alone (a row of factors times the vertex areas) are a poor quadrature where R_d is
  * narrower than the triangles; near triangles are therefore integrated, those around the vertex in
  * polar form.
  *
- * SPDX-License-Identifier: GPL-3.0-or-later
+ * SPDX-License-Identifier: MIT
  */
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 
-#include "bake/stages/transport_parts.h"
 #include "core/memory.h"
 #include "core/small_maths.h"
+#include "core/vertex_frame.h"
 
 enum { POLAR_ANGLES = 6, POLAR_RADII = 12, CUTS_MAX = 12, ROWS_PER_BLOCK = 32 };
 static const float NEAR_EDGES =

@@ -1,10 +1,10 @@
 /* blend_solve.h - the least-squares problem of one texel's three blending weights, for three
  * channels.
  *
- * SPDX-License-Identifier: GPL-3.0-or-later
+ * SPDX-License-Identifier: MIT
  */
-#ifndef PARIAN_BAKE_BLEND_SOLVE_H
-#define PARIAN_BAKE_BLEND_SOLVE_H
+#ifndef PARIAN_CORE_BLEND_SOLVE_H
+#define PARIAN_CORE_BLEND_SOLVE_H
 
 #include <stdbool.h>
 #include <stdint.h>

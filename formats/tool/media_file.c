@@ -1,6 +1,6 @@
 /* media_file.c - reads a medium from a JSON material file.
  *
- * SPDX-License-Identifier: GPL-3.0-or-later
+ * SPDX-License-Identifier: MIT
  */
 #include <math.h>
 #include <stdio.h>
@@ -8,9 +8,9 @@
 
 #include <cjson/cJSON.h>
 
-#include "bake/stages/media.h"
 #include "core/memory.h"
 #include "tool/files.h"
+#include "tool/media_file.h"
 
 enum { FILE_SIZE_MAX = 1 << 20 };
 
@@ -190,7 +190,7 @@ parian_result parian_media_read_file(const parian_env *env, const char *path, pa
         medium_file file = {env, path, root};
         result = read_medium(&file, &made);
     }
-    if (result == PARIAN_OK && parian_media_check(env, &made) != PARIAN_OK) {
+    if (result == PARIAN_OK && parian_medium_check(env, &made) != PARIAN_OK) {
         result = PARIAN_E_FORMAT;
     }
     if (result == PARIAN_OK) {

@@ -1,8 +1,8 @@
 /* blend_solve.c - the least-squares problem of one texel's three blending weights.
  *
- * SPDX-License-Identifier: GPL-3.0-or-later
+ * SPDX-License-Identifier: MIT
  */
-#include "bake/stages/blend_solve.h"
+#include "core/blend_solve.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,12 +1,15 @@
 /* media_presets.c - measured media, as the literature lists them.
  *
- * Numbers are in mm^-1 as printed; the macros turn them into m^-1. Jensen et al. measured reduced scattering
- * only, which stays reduced (g is unknown, not 0). Circulating copies have misprints that are mended here:
- * Chicken1 and Chicken2 absorb 0.015 and 0.018 in red (not a tenth of it), Apple 0.046 in blue (not 0.0046).
+ * Numbers are in mm^-1 as printed; the macros turn them into m^-1. Jensen et al. measured reduced
+ * scattering only, which stays reduced (g is unknown, not 0). Circulating copies have misprints
+ * that are mended here: Chicken1 and Chicken2 absorb 0.015 and 0.018 in red (not a tenth of it),
+ * Apple 0.046 in blue (not 0.0046).
  *
- * SPDX-License-Identifier: GPL-3.0-or-later
+ * SPDX-License-Identifier: MIT
  */
-#include "bake/stages/media.h"
+#include "tool/media_file.h"
+
+#include <ctype.h>
 
 /* clang-format off */
 #define JENSEN \
@@ -123,4 +126,35 @@ uint32_t parian_media_preset_count(void)
 const parian_medium *parian_media_preset(uint32_t index)
 {
     return index < parian_media_preset_count() ? &presets[index] : NULL;
+}
+
+static char next_letter(const char **at)
+{
+    while (**at == ' ' || **at == '-' || **at == '_') {
+        (*at)++;
+    }
+    char letter = (char)tolower((unsigned char)**at);
+    *at += letter != '\0';
+    return letter;
+}
+
+static bool same_name(const char *a, const char *b)
+{
+    for (;;) {
+        char x = next_letter(&a), y = next_letter(&b);
+        if (x != y || x == '\0') {
+            return x == y;
+        }
+    }
+}
+
+const parian_medium *parian_media_find(const char *name)
+{
+    for (uint32_t i = 0; name && i < parian_media_preset_count(); i++) {
+        const parian_medium *preset = parian_media_preset(i);
+        if (same_name(name, preset->name)) {
+            return preset;
+        }
+    }
+    return NULL;
 }

@@ -9,19 +9,20 @@
  * G is the response of the stored factors, e the energy that is still missing outside the window,
  * c_k the part of corner k's hat outside the window.
  *
- * SPDX-License-Identifier: GPL-3.0-or-later
+ * SPDX-License-Identifier: MIT
  */
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 
-#include "bake/stages/blend_solve.h"
-#include "bake/stages/transport_parts.h"
+#include "core/blend.h"
+#include "core/blend_solve.h"
 #include "core/half.h"
 #include "core/memory.h"
 #include "core/near_factors.h"
 #include "core/operator.h"
 #include "core/texel_response.h"
+#include "core/vertex_frame.h"
 
 /* A vertex of the global part radiates at most this many times what R_d has at its peak. */
 static const double CEILING = 2;
@@ -327,8 +328,8 @@ static parian_result run_blocks(blend_job *job, double *error)
     return PARIAN_OK;
 }
 
-parian_result parian_stage_blend(const parian_env *env, parian_body *body,
-                                 parian_blend_report *report)
+parian_result parian_blend_make(const parian_env *env, parian_body *body,
+                                parian_blend_report *report)
 {
     parian_local_form form = body->local_form;
     blend_job job = {.env = env, .body = body, .ring_width = body->paper_form ? 1 : 2};

@@ -1,12 +1,12 @@
-/* transport_parts.h - what the transport stages share: vertex areas and fans, exact totals, rows of
- * factors.
+/* vertex_frame.h - the transfer surface seen from its vertices: areas and fans, exact totals of
+ * R_d, rows of numbers over all vertices.
  *
- * SPDX-License-Identifier: GPL-3.0-or-later
+ * SPDX-License-Identifier: MIT
  */
-#ifndef PARIAN_BAKE_TRANSPORT_PARTS_H
-#define PARIAN_BAKE_TRANSPORT_PARTS_H
+#ifndef PARIAN_CORE_VERTEX_FRAME_H
+#define PARIAN_CORE_VERTEX_FRAME_H
 
-#include "bake/stages/transport.h"
+#include "core/body.h"
 #include "core/transport_model.h"
 
 /* The transfer surface seen from its vertices. */

@@ -1,16 +1,16 @@
-/* global_frame.c - the transfer surface seen from its vertices: areas, fans, normals, coordinate
+/* vertex_frame.c - the transfer surface seen from its vertices: areas, fans, normals, coordinate
  * arrays.
  *
- * SPDX-License-Identifier: GPL-3.0-or-later
+ * SPDX-License-Identifier: MIT
  */
 #include <math.h>
 #include <string.h>
 
-#include "bake/stages/transport_parts.h"
 #include "core/clones.h"
 #include "core/lanes.h"
 #include "core/memory.h"
 #include "core/small_maths.h"
+#include "core/vertex_frame.h"
 
 static double corner_angle(const double a[3], const double b[3])
 {

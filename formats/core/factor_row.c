@@ -1,0 +1,181 @@
+/* factor_row.c - throughput factors between one vertex and all others, prefiltered, before any is
+ * dropped.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "core/factor_row.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/small_maths.h"
+
+/* Squared distances over 8 (bias_v + bias_u), which is the squared edge of an equilateral mesh. */
+static const float PREFILTER_FROM = 1.5f, PREFILTER_FULL = 2.4f, PREFILTER_TO = 144;
+
+static parian_result make_caps(const parian_env *env, parian_factor_maker *maker)
+{
+    uint32_t count = maker->body->vertex_count;
+    if (!PARIAN_NEW(env, maker->cap, count)) {
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for the caps of %u vertices", count);
+    }
+    for (uint32_t v = 0; v < count; v++) {
+        double area = maker->frame.area[v];
+        for (int c = 0; c < 3; c++) {
+            const parian_dipole *d = &maker->model.dipole[c];
+            double energy = parian_dipole_disc_energy(d, sqrt(area / PARIAN_PI));
+            maker->cap[v][c] = (float)(area > 0 ? energy / area : parian_dipole_rd(d, 0));
+        }
+    }
+    return PARIAN_OK;
+}
+
+parian_result parian_factor_maker_make(const parian_env *env, const parian_body *body,
+                                       parian_factor_maker *maker)
+{
+    bool split = body->local_form == PARIAN_LOCAL_SPLIT;
+    bool diagonal = split || body->local_form == PARIAN_LOCAL_NONE;
+    memset(maker, 0, sizeof *maker);
+    maker->body = body;
+    parian_result result = parian_transport_model_make(
+        env, body, split ? PARIAN_MODEL_FAR : PARIAN_MODEL_FULL, &maker->model);
+    if (result == PARIAN_OK) {
+        result = parian_vertex_frame_make(env, body, &maker->frame);
+    }
+    if (result == PARIAN_OK && !body->paper_form) {
+        result = make_caps(env, maker);
+    }
+    if (result == PARIAN_OK && diagonal && !body->paper_form) {
+        if (!PARIAN_NEW(env, maker->total, body->vertex_count)) {
+            return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u row sums",
+                               body->vertex_count);
+        }
+        result = parian_vertex_totals(env, body, &maker->model, &maker->frame, false, maker->total);
+    }
+    return result;
+}
+
+void parian_factor_maker_free(const parian_env *env, parian_factor_maker *maker)
+{
+    parian_transport_model_free(env, &maker->model);
+    parian_vertex_frame_free(env, &maker->frame);
+    parian_free(env, maker->total);
+    parian_free(env, maker->cap);
+    memset(maker, 0, sizeof *maker);
+}
+
+/* Linear interpolation at both ends widens R_d by kappa times its Laplacian. The factor takes that
+ * off beforehand, as R / (1 + kappa L / R), which never changes sign; nothing in the first ring,
+ * where R_d and hats have nothing in common and the blend takes over. */
+static float prefilter_factor(float value, float widening, float strength)
+{
+    if (!(value > 0)) {
+        return 1;
+    }
+    float ratio = strength * widening / value;
+    return ratio > 0 ? 1 / (1 + ratio) : fminf(1 - ratio, 2.0f);
+}
+
+/* How far a pair is from the first ring, 0 to 1. Opposite sides of a sheet are never neighbours on
+ * the surface, however near they are. */
+static float prefilter_strength(float t, float facing)
+{
+    float ramp = (t - PREFILTER_FROM) / (PREFILTER_FULL - PREFILTER_FROM);
+    if (facing < 0 || ramp >= 1) {
+        return 1;
+    }
+    return ramp > 0 ? ramp * ramp * (3 - 2 * ramp) : 0;
+}
+
+/* Share of the squared distance that lies along a normal. */
+static float normal_share(const double d[3], const float n[3], float r2)
+{
+    double along = d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
+    return (float)fmin(1, along * along / r2);
+}
+
+/* Vertices far nearer than their areas let expect. */
+static void cap_one(const parian_factor_maker *maker, uint32_t v, uint32_t u, const parian_row *row)
+{
+    for (int c = 0; c < 3; c++) {
+        float cap = fminf(maker->cap[v][c], maker->cap[u][c]);
+        row->value[c][u] = fminf(row->value[c][u], cap);
+    }
+}
+
+/* Each end widens R_d by its bias times the Laplacian over its own tangent plane, which is
+ * 4 f' + 4 (r^2 - a^2) f'' for a point a away from that plane (f a function of r^2). */
+static void prefilter_one(const parian_factor_maker *maker, uint32_t v, uint32_t u,
+                          const parian_row *row)
+{
+    const parian_vertex_frame *frame = &maker->frame;
+    float r2 = row->r2[u], plain[3], laplacian[3], slope[3];
+    const float *nv = frame->normal[v], *nu = frame->normal[u];
+    float t = r2 / (8 * (frame->bias[v] + frame->bias[u]));
+    float strength = prefilter_strength(t, nv[0] * nu[0] + nv[1] * nu[1] + nv[2] * nu[2]);
+    if (!(t > PREFILTER_FROM)) {
+        cap_one(maker, v, u, row);
+    }
+    if (!(strength > 0 && t < PREFILTER_TO && r2 > 0)) {
+        return;
+    }
+    double d[3];
+    parian_sub3(maker->body->vertex_position[u], maker->body->vertex_position[v], d);
+    float off_v = normal_share(d, nv, r2), off_u = normal_share(d, nu, r2);
+    parian_radial_eval(&maker->model.value, r2, plain);
+    parian_radial_eval(&maker->model.laplacian, r2, laplacian);
+    parian_radial_eval(&maker->model.slope, r2, slope);
+    for (int c = 0; c < 3; c++) {
+        float curved = laplacian[c] - 4 * slope[c];
+        float widening = frame->bias[v] * (4 * slope[c] + (1 - off_v) * curved) +
+                         frame->bias[u] * (4 * slope[c] + (1 - off_u) * curved);
+        row->value[c][u] *= prefilter_factor(plain[c], widening, strength);
+    }
+}
+
+/* Least of sixteen, to pass over what is far. */
+static float least_of_16(const float *r2)
+{
+    float least = r2[0];
+    for (int k = 1; k < 16; k++) {
+        least = r2[k] < least ? r2[k] : least;
+    }
+    return least;
+}
+
+static void prefilter_row(const parian_factor_maker *maker, uint32_t v, const parian_row *row)
+{
+    const parian_point_arrays *points = &maker->frame.points;
+    float reach2 = PREFILTER_TO * 8 * (maker->frame.bias[v] + maker->frame.bias_max);
+    for (uint32_t u = 0; u < points->padded; u += 16) {
+        if (least_of_16(row->r2 + u) > reach2) {
+            continue;
+        }
+        for (uint32_t k = u; k < u + 16 && k < points->count; k++) {
+            prefilter_one(maker, v, k, row);
+        }
+    }
+}
+
+void parian_factor_row(const parian_factor_maker *maker, uint32_t v, const parian_row *row)
+{
+    const parian_point_arrays *points = &maker->frame.points;
+    parian_transport_model_row(&maker->model, maker->body->vertex_position[v],
+                               maker->frame.normal[v], false, points, row->r2, row->value);
+    if (maker->cap) {
+        prefilter_row(maker, v, row);
+    }
+    for (int c = 0; c < 3; c++) {
+        for (uint32_t u = points->count; u < points->padded; u++) {
+            row->value[c][u] = 0;
+        }
+        row->value[c][v] = 0;
+        float area = maker->frame.area[v];
+        if (maker->total && area > 0) {
+            double rest = maker->total[v][c] -
+                          parian_row_dot(maker->frame.area, row->value[c], points->padded);
+            row->value[c][v] = (float)fmax(0, rest / area);
+        }
+    }
+}

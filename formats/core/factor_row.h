@@ -1,0 +1,30 @@
+/* factor_row.h - throughput factors between one vertex and all others, prefiltered, before any is
+ * dropped.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef PARIAN_CORE_FACTOR_ROW_H
+#define PARIAN_CORE_FACTOR_ROW_H
+
+#include "core/transport_model.h"
+#include "core/vertex_frame.h"
+
+/* What every row needs. */
+typedef struct parian_factor_maker {
+    const parian_body *body;
+    parian_transport_model model;
+    parian_vertex_frame frame;
+    float (*total)[3]; /* row sums that the diagonal brings about; NULL: the diagonal is zero */
+    float (*cap)[3];   /* mean of R_d over a disc of the vertex's area; NULL without prefilter */
+} parian_factor_maker;
+
+/* Prepare for a body's surface, medium and local form; free it in every case. Errors:
+ * PARIAN_E_NOMEM, PARIAN_E_ARGUMENT (no triangles). Threads: uses env->par. */
+parian_result parian_factor_maker_make(const parian_env *env, const parian_body *body,
+                                       parian_factor_maker *maker);
+void parian_factor_maker_free(const parian_env *env, parian_factor_maker *maker);
+
+/* Fill row with the factors F_vu of receiver v from all vertices u, m^-2; zeros in the padding. */
+void parian_factor_row(const parian_factor_maker *maker, uint32_t v, const parian_row *row);
+
+#endif
