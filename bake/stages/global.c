@@ -81,7 +81,7 @@ static void code_block(void *context, size_t index)
     for (uint32_t i = 0; result == PARIAN_OK && i < rows_of_block(job, number); i++) {
         uint32_t v = number * ROWS_PER_BLOCK + i;
         parian_factor_row(&job->maker.factors, v, &work.row);
-        parian_row_code(&work, job->op, v);
+        parian_factor_code(&work.row, work.coded, job->op, v);
     }
     parian_row_work_free(job->env, &work);
     if (result != PARIAN_OK) {

@@ -13,7 +13,7 @@
 #include "core/memory.h"
 #include "core/small_maths.h"
 
-enum { GAP_MAX = 8, RUN_STEP = 8, SCALED_EXPONENT = 13, BISECTIONS = 14 };
+enum { GAP_MAX = 8, RUN_STEP = 8, BISECTIONS = 14 };
 
 parian_result parian_row_maker_make(const parian_env *env, const parian_global_desc *desc,
                                     const parian_body *body, parian_row_maker *maker)
@@ -173,34 +173,6 @@ static float sum_unkept(const float *weighted, const uint8_t *keep, uint32_t pad
     return sum;
 }
 
-PARIAN_CLONES
-static float largest(const float *value, uint32_t padded)
-{
-    parian_lanes v, most = {0};
-    for (uint32_t i = 0; i < padded; i += 16) {
-        PARIAN_LANES_LOAD(v, value + i);
-        parian_lane_mask more = v > most;
-        most = (parian_lanes)(((parian_lane_mask)v & more) | ((parian_lane_mask)most & ~more));
-    }
-    float all = 0;
-    for (int k = 0; k < 16; k++) {
-        all = most[k] > all ? most[k] : all;
-    }
-    return all;
-}
-
-/* Power of two that brings the largest factor into [2^13, 2^14). */
-static float choose_scale(float most)
-{
-    int exponent;
-    if (!(most > 0)) {
-        return 1;
-    }
-    frexpf(most, &exponent);
-    exponent -= SCALED_EXPONENT + 1;
-    return ldexpf(1, exponent < -120 ? -120 : exponent > 120 ? 120 : exponent);
-}
-
 void parian_row_choose(const parian_row_maker *maker, parian_row_work *work,
                        parian_row_choice *choice)
 {
@@ -218,7 +190,7 @@ void parian_row_choose(const parian_row_maker *maker, parian_row_work *work,
             bound[c] = 0;
         }
         choice->sum[c] = sum;
-        choice->scale[c] = choose_scale(largest(work->row.value[c], padded));
+        choice->scale[c] = parian_factor_scale(work->row.value[c], padded);
     }
     mark_kept(work->weighted, bound, padded, work->keep);
     round_runs(work->keep, count);
@@ -274,38 +246,4 @@ parian_result parian_row_append_runs(const parian_env *env, const parian_row_mak
         *factors += i - begin;
     }
     return PARIAN_OK;
-}
-
-/* What would be a subnormal half is 2^-28 of the row's largest factor: zero. */
-static float scale_factor(float value, float inverse)
-{
-    float scaled = value * inverse;
-    return scaled < PARIAN_HALF_MIN_NORMAL ? 0.0f : scaled;
-}
-
-PARIAN_CLONES
-static void interleave(const float *restrict r, const float *restrict g, const float *restrict b,
-                       const float inverse[3], uint32_t count, float (*restrict out)[3])
-{
-    float ir = inverse[0], ig = inverse[1], ib = inverse[2];
-    for (uint32_t i = 0; i < count; i++) {
-        out[i][0] = scale_factor(r[i], ir);
-        out[i][1] = scale_factor(g[i], ig);
-        out[i][2] = scale_factor(b[i], ib);
-    }
-}
-
-void parian_row_code(parian_row_work *work, parian_operator *op, uint32_t v)
-{
-    float inverse[3];
-    for (int c = 0; c < 3; c++) {
-        inverse[c] = 1 / op->scale[v][c];
-    }
-    for (uint32_t r = op->run_offset[v]; r < op->run_offset[v + 1]; r++) {
-        uint32_t column = op->run_column[r], count = op->run_count[r];
-        interleave(work->row.value[0] + column, work->row.value[1] + column,
-                   work->row.value[2] + column, inverse, count, work->coded);
-        parian_half_from_float_array(work->coded[0], op->factor[op->run_factor[r]],
-                                     3 * (size_t)count);
-    }
 }

@@ -54,7 +54,5 @@ void parian_row_choose(const parian_row_maker *maker, parian_row_work *work,
 parian_result parian_row_append_runs(const parian_env *env, const parian_row_maker *maker,
                                      const parian_row_work *work, parian_run_list *list,
                                      uint64_t *factors);
-/* Write the factors of row v of op, whose runs and scales are set. */
-void parian_row_code(parian_row_work *work, parian_operator *op, uint32_t v);
 
 #endif

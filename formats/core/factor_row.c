@@ -8,9 +8,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/clones.h"
+#include "core/half.h"
+#include "core/lanes.h"
 #include "core/memory.h"
 #include "core/small_maths.h"
 
+enum { SCALED_EXPONENT = 13 };
 /* Squared distances over 8 (bias_v + bias_u), which is the squared edge of an equilateral mesh. */
 static const float PREFILTER_FROM = 1.5f, PREFILTER_FULL = 2.4f, PREFILTER_TO = 144;
 
@@ -177,5 +181,71 @@ void parian_factor_row(const parian_factor_maker *maker, uint32_t v, const paria
                           parian_row_dot(maker->frame.area, row->value[c], points->padded);
             row->value[c][v] = (float)fmax(0, rest / area);
         }
+    }
+}
+
+PARIAN_CLONES
+static float largest(const float *value, uint32_t padded)
+{
+    parian_lanes v, most = {0};
+    for (uint32_t i = 0; i < padded; i += 16) {
+        PARIAN_LANES_LOAD(v, value + i);
+        parian_lane_mask more = v > most;
+        most = (parian_lanes)(((parian_lane_mask)v & more) | ((parian_lane_mask)most & ~more));
+    }
+    float all = 0;
+    for (int k = 0; k < 16; k++) {
+        all = most[k] > all ? most[k] : all;
+    }
+    return all;
+}
+
+/* Power of two that brings the largest factor into [2^13, 2^14). */
+static float choose_scale(float most)
+{
+    int exponent;
+    if (!(most > 0)) {
+        return 1;
+    }
+    frexpf(most, &exponent);
+    exponent -= SCALED_EXPONENT + 1;
+    return ldexpf(1, exponent < -120 ? -120 : exponent > 120 ? 120 : exponent);
+}
+
+float parian_factor_scale(const float *value, uint32_t padded)
+{
+    return choose_scale(largest(value, padded));
+}
+
+/* What would be a subnormal half is 2^-28 of the row's largest factor: zero. */
+static float scale_factor(float value, float inverse)
+{
+    float scaled = value * inverse;
+    return scaled < PARIAN_HALF_MIN_NORMAL ? 0.0f : scaled;
+}
+
+PARIAN_CLONES
+static void interleave(const float *restrict r, const float *restrict g, const float *restrict b,
+                       const float inverse[3], uint32_t count, float (*restrict out)[3])
+{
+    float ir = inverse[0], ig = inverse[1], ib = inverse[2];
+    for (uint32_t i = 0; i < count; i++) {
+        out[i][0] = scale_factor(r[i], ir);
+        out[i][1] = scale_factor(g[i], ig);
+        out[i][2] = scale_factor(b[i], ib);
+    }
+}
+
+void parian_factor_code(const parian_row *row, float (*coded)[3], parian_operator *op, uint32_t v)
+{
+    float inverse[3];
+    for (int c = 0; c < 3; c++) {
+        inverse[c] = 1 / op->scale[v][c];
+    }
+    for (uint32_t r = op->run_offset[v]; r < op->run_offset[v + 1]; r++) {
+        uint32_t column = op->run_column[r], count = op->run_count[r];
+        interleave(row->value[0] + column, row->value[1] + column, row->value[2] + column, inverse,
+                   count, coded);
+        parian_half_from_float_array(coded[0], op->factor[op->run_factor[r]], 3 * (size_t)count);
     }
 }

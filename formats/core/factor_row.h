@@ -27,4 +27,12 @@ void parian_factor_maker_free(const parian_env *env, parian_factor_maker *maker)
 /* Fill row with the factors F_vu of receiver v from all vertices u, m^-2; zeros in the padding. */
 void parian_factor_row(const parian_factor_maker *maker, uint32_t v, const parian_row *row);
 
+/* The scale of a row and channel as it is coded: the power of two that brings the largest of
+ * value [padded] into [2^13, 2^14). */
+float parian_factor_scale(const float *value, uint32_t padded);
+
+/* Write the factors of row v of op, whose runs and scales are set. coded [PARIAN_RUN_MAX] is
+ * scratch. */
+void parian_factor_code(const parian_row *row, float (*coded)[3], parian_operator *op, uint32_t v);
+
 #endif
