@@ -46,11 +46,11 @@ uint32_t parian_body_register_size(const parian_body *body, uint32_t index)
     return size;
 }
 
-float parian_renderer_shadow_lift(const parian_renderer *renderer)
+float parian_renderer_shadow_lift(const parian_renderer *renderer, float scale)
 {
     float diagonal[3];
     vec3_sub(diagonal, renderer->scene->info.body_upper, renderer->scene->info.body_lower);
-    return 2e-3f * vec3_length(diagonal);
+    return 2e-3f * scale * vec3_length(diagonal);
 }
 
 static double seconds_now(void)
@@ -105,7 +105,11 @@ static parian_result prepare(parian_renderer *renderer)
         renderer->pass[p].name = pass_names[p];
     }
     renderer->lights_changed = true;
-    return renderer->backend->create(renderer);
+    parian_result result = parian_renderer_start_instances(renderer);
+    if (result == PARIAN_OK) {
+        result = renderer->backend->create(renderer);
+    }
+    return result == PARIAN_OK ? renderer->backend->resize(renderer, 1) : result;
 }
 
 parian_result parian_renderer_create(const parian_env *env, const parian_scene *scene,
@@ -150,6 +154,7 @@ void parian_renderer_destroy(parian_renderer *renderer)
         parian_env env = renderer->env;
         renderer->backend->destroy(renderer);
         parian_light_list_free(&env, &renderer->lights);
+        parian_free(&env, renderer->instances);
         parian_free(&env, renderer->optics);
         parian_free(&env, renderer);
     }
@@ -165,43 +170,14 @@ uint64_t parian_renderer_memory(const parian_renderer *renderer)
     return renderer->backend->memory(renderer);
 }
 
-/* The ball around the middle of the bodies' box that holds all their vertices, or around
- * everything. */
-static parian_ball find_ball(const parian_scene *scene, bool everything)
+parian_result parian_renderer_fit_shadows(parian_renderer *renderer, parian_light_list *list)
 {
-    const parian_scene_info *info = &scene->info;
-    parian_ball ball;
-    float reach = 0.0f;
-    for (int c = 0; c < 3; c++) {
-        ball.center[c] = 0.5f * (everything ? info->lower[c] + info->upper[c]
-                                            : info->body_lower[c] + info->body_upper[c]);
-    }
-    if (everything) {
-        float half[3];
-        vec3_sub(half, info->upper, ball.center);
-        reach = vec3_length(half);
-    }
-    for (uint32_t b = 0; !everything && b < scene->data.body_count; b++) {
-        const parian_body *body = &scene->data.bodies[b];
-        for (uint32_t v = 0; v < body->vertex_count; v++) {
-            float away[3];
-            vec3_sub(away, body->vertex_position[v], ball.center);
-            reach = fmaxf(reach, vec3_length(away));
-        }
-    }
-    ball.radius = fmaxf(reach, 1e-9f);
-    return ball;
-}
-
-static parian_result fit_shadows(parian_renderer *renderer, parian_light_list *list)
-{
-    const parian_scene *scene = renderer->scene;
-    parian_ball bodies = find_ball(scene, false), everything = find_ball(scene, true);
-    bool surrounded =
-        scene->data.surrounding_count > 0 && everything.radius > 1.05f * bodies.radius;
+    const parian_bounds *bounds = &renderer->bounds;
+    bool surrounded = renderer->scene->data.surrounding_count > 0 &&
+                      bounds->everything.radius > 1.05f * bounds->bodies.radius;
     return parian_shadow_fit(&renderer->env, list, renderer->desc.shadow_size, shadow_memory_max,
-                             &bodies, &everything, surrounded, scene->info.lower,
-                             scene->info.upper);
+                             &bounds->bodies, &bounds->everything, surrounded, bounds->lower,
+                             bounds->upper);
 }
 
 parian_result parian_renderer_set_lights(parian_renderer *renderer, const parian_light *lights,
@@ -215,8 +191,11 @@ parian_result parian_renderer_set_lights(parian_renderer *renderer, const parian
     if (result != PARIAN_OK) {
         return result;
     }
-    result = fit_shadows(renderer, &list);
-    if (result != PARIAN_OK) {
+    bool equal = parian_light_list_equal(&list, &renderer->lights);
+    if (!equal) {
+        result = parian_renderer_fit_shadows(renderer, &list);
+    }
+    if (equal || result != PARIAN_OK) {
         parian_light_list_free(&renderer->env, &list);
         return result;
     }
@@ -241,7 +220,10 @@ parian_result parian_renderer_set_settings(parian_renderer *renderer,
                                "the background is not within 0 to 1e12");
         }
     }
-    renderer->settings = *settings;
+    if (memcmp(&renderer->settings, settings, sizeof *settings) != 0) {
+        memcpy(&renderer->settings, settings, sizeof *settings);
+        renderer->picture_stale = true;
+    }
     return PARIAN_OK;
 }
 
@@ -252,12 +234,18 @@ parian_result parian_renderer_set_values(parian_renderer *renderer, const float 
     }
     parian_result result = PARIAN_OK;
     renderer->has_values = false;
+    renderer->picture_stale = true;
     for (uint32_t b = 0; b < renderer->scene->data.body_count && result == PARIAN_OK; b++) {
         result = renderer->backend->set_values(renderer, b, value);
         value += renderer->scene->data.bodies[b].texel_count;
     }
     renderer->has_values = result == PARIAN_OK;
     return result;
+}
+
+void parian_renderer_invalidate(parian_renderer *renderer)
+{
+    renderer->lights_changed = true;
 }
 
 parian_result parian_renderer_relight(parian_renderer *renderer)
@@ -269,6 +257,7 @@ parian_result parian_renderer_relight(parian_renderer *renderer)
         return PARIAN_OK;
     }
     parian_result result = renderer->backend->relight(renderer);
+    renderer->picture_stale = true;
     if (result == PARIAN_OK) {
         renderer->lights_changed = false;
     }
@@ -283,6 +272,14 @@ static bool all_finite(const float *value, int count)
         }
     }
     return true;
+}
+
+/* Exposure and framebuffer matter to the tone pass alone. */
+static bool is_shading_due(const parian_renderer *renderer, const parian_draw_desc *desc)
+{
+    return renderer->picture_stale || renderer->picture_width != desc->width ||
+           renderer->picture_height != desc->height ||
+           memcmp(&renderer->picture_camera, &desc->camera, sizeof desc->camera) != 0;
 }
 
 parian_result parian_renderer_draw(parian_renderer *renderer, const parian_draw_desc *desc)
@@ -305,114 +302,18 @@ parian_result parian_renderer_draw(parian_renderer *renderer, const parian_draw_
         return parian_fail(&renderer->env, PARIAN_E_ARGUMENT, "there are no values to paint");
     }
     parian_result result = parian_renderer_relight(renderer);
+    bool shade = result == PARIAN_OK && is_shading_due(renderer, desc);
     if (result == PARIAN_OK) {
-        result = renderer->backend->draw(renderer, desc);
+        renderer->picture_width = 0;
+        result = renderer->backend->draw(renderer, desc, shade);
     }
     if (result == PARIAN_OK) {
         renderer->picture_width = desc->width;
         renderer->picture_height = desc->height;
+        renderer->picture_camera = desc->camera;
+        renderer->picture_stale = false;
     }
     return result;
-}
-
-parian_result parian_renderer_read_picture(parian_renderer *renderer, float (*radiance)[4],
-                                           uint8_t (*srgb)[4])
-{
-    if (!renderer) {
-        return PARIAN_E_ARGUMENT;
-    }
-    if (!renderer->picture_width) {
-        return parian_fail(&renderer->env, PARIAN_E_ARGUMENT,
-                           "there is no picture before the first draw");
-    }
-    return renderer->backend->read_picture(renderer, radiance, srgb);
-}
-
-static void copy_surface(const parian_body *body, const parian_texel_arrays *arrays, size_t first)
-{
-    size_t count = body->texel_count;
-    if (arrays->position) {
-        memcpy(arrays->position + first, body->texel_position, count * sizeof *arrays->position);
-    }
-    if (arrays->normal) {
-        memcpy(arrays->normal + first, body->texel_normal, count * sizeof *arrays->normal);
-    }
-    if (arrays->area) {
-        memcpy(arrays->area + first, body->texel_area, count * sizeof *arrays->area);
-    }
-    for (size_t t = 0; arrays->place && t < count; t++) {
-        arrays->place[first + t][0] = body->texel_index[t] % body->atlas_size;
-        arrays->place[first + t][1] = body->texel_index[t] / body->atlas_size;
-    }
-}
-
-/* local, global and their sum, each where asked for. */
-static parian_result read_radiosity(parian_renderer *renderer, uint32_t b,
-                                    const parian_texel_arrays *arrays, size_t first)
-{
-    const parian_backend_table *backend = renderer->backend;
-    size_t count = renderer->scene->data.bodies[b].texel_count;
-    float(*local)[3] = NULL, (*global)[3] = NULL;
-    parian_result result = PARIAN_E_NOMEM;
-    if (!PARIAN_NEW(&renderer->env, local, count) || !PARIAN_NEW(&renderer->env, global, count)) {
-        parian_fail(&renderer->env, result, "no memory for the radiosity of %zu texels", count);
-        goto done;
-    }
-    result = backend->read_texels(renderer, b, PARIAN_RESULT_LOCAL, local);
-    if (result == PARIAN_OK) {
-        result = backend->read_texels(renderer, b, PARIAN_RESULT_GLOBAL, global);
-    }
-    for (size_t t = 0; result == PARIAN_OK && t < count; t++) {
-        for (int c = 0; c < 3; c++) {
-            if (arrays->radiosity) {
-                arrays->radiosity[first + t][c] = local[t][c] + global[t][c];
-            }
-            if (arrays->radiosity_local) {
-                arrays->radiosity_local[first + t][c] = local[t][c];
-            }
-            if (arrays->radiosity_global) {
-                arrays->radiosity_global[first + t][c] = global[t][c];
-            }
-        }
-    }
-done:
-    parian_free(&renderer->env, local);
-    parian_free(&renderer->env, global);
-    return result;
-}
-
-parian_result parian_renderer_read_texels(parian_renderer *renderer,
-                                          const parian_texel_arrays *arrays)
-{
-    if (!renderer || !arrays) {
-        return PARIAN_E_ARGUMENT;
-    }
-    size_t first = 0;
-    const bool lit = arrays->irradiance || arrays->radiosity || arrays->radiosity_local ||
-                     arrays->radiosity_global;
-    parian_result result = lit ? parian_renderer_relight(renderer) : PARIAN_OK;
-    for (uint32_t b = 0; result == PARIAN_OK && b < renderer->scene->data.body_count; b++) {
-        const parian_body *body = &renderer->scene->data.bodies[b];
-        copy_surface(body, arrays, first);
-        if (arrays->irradiance) {
-            result = renderer->backend->read_texels(renderer, b, PARIAN_RESULT_IRRADIANCE,
-                                                    arrays->irradiance + first);
-        }
-        if (result == PARIAN_OK &&
-            (arrays->radiosity || arrays->radiosity_local || arrays->radiosity_global)) {
-            result = read_radiosity(renderer, b, arrays, first);
-        }
-        first += body->texel_count;
-    }
-    return result;
-}
-
-parian_result parian_renderer_read_register(parian_renderer *renderer, uint32_t body,
-                                            uint32_t index, float (*value)[3])
-{
-    parian_result result = parian_renderer_relight(renderer);
-    return result == PARIAN_OK ? renderer->backend->read_register(renderer, body, index, value)
-                               : result;
 }
 
 void parian_renderer_set_timing(parian_renderer *renderer, bool on)

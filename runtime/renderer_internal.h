@@ -8,6 +8,7 @@
 #include "core/body.h"
 #include "lights/light_list.h"
 #include "parian/runtime.h"
+#include "placement.h"
 #include "scene_internal.h"
 #include "shade/body_optics.h"
 
@@ -32,25 +33,37 @@ typedef enum parian_texel_result {
 
 /* A backend's functions; state is renderer->state. */
 typedef struct parian_backend_table {
+    /* What all instances share; resize follows. */
     parian_result (*create)(parian_renderer *renderer);
     void (*destroy)(parian_renderer *renderer);
-    /* The lights changed: make E, the registers, the local and global part, and their gutters. */
+    /* Hold the results of so many instances; after an error those of as many as before. */
+    parian_result (*resize)(parian_renderer *renderer, uint32_t instance_count);
+    /* The lights changed: make E, the registers, the local and global part, and their gutters, of
+     * all instances. */
     parian_result (*relight)(parian_renderer *renderer);
-    /* Shade and tone-map; keeps the pictures. */
-    parian_result (*draw)(parian_renderer *renderer, const parian_draw_desc *desc);
+    /* Shade where asked to (else the last linear picture is still right) and tone-map; keeps the
+     * pictures. */
+    parian_result (*draw)(parian_renderer *renderer, const parian_draw_desc *desc, bool shade);
     /* The linear picture of the last draw, rows from top to bottom; and the tone-mapped one. */
     parian_result (*read_picture)(parian_renderer *renderer, float (*radiance)[4],
                                   uint8_t (*srgb)[4]);
-    /* A result at owned texels of one body: [texel_count]. */
-    parian_result (*read_texels)(parian_renderer *renderer, uint32_t body,
+    /* A result at owned texels of one body of one instance: [texel_count]. */
+    parian_result (*read_texels)(parian_renderer *renderer, uint32_t instance, uint32_t body,
                                  parian_texel_result which, float (*value)[3]);
-    /* Values to paint on one body: [texel_count]. */
+    /* Values to paint on one body of every instance: [texel_count]. */
     parian_result (*set_values)(parian_renderer *renderer, uint32_t body, const float (*value)[3]);
-    /* A register of one body: [size of the register]; register 0 is Phi, 1 is B at vertices. */
+    /* A register of one body of the first instance: [size of the register]; register 0 is Phi, 1
+     * is B at vertices. */
     parian_result (*read_register)(parian_renderer *renderer, uint32_t body, uint32_t index,
                                    float (*value)[3]);
     uint64_t (*memory)(const parian_renderer *renderer);
 } parian_backend_table;
+
+/* Where bodies and surroundings are: boxes, and balls around the boxes' middles; world space. */
+typedef struct parian_bounds {
+    float lower[3], upper[3]; /* of everything */
+    parian_ball bodies, everything;
+} parian_bounds;
 
 extern const parian_backend_table parian_gl_backend, parian_cpu_backend;
 
@@ -64,13 +77,18 @@ struct parian_renderer {
     char name[PARIAN_RENDERER_NAME_MAX];
     parian_settings settings;
     parian_light_list lights;
-    parian_body_optics *optics; /* [body_count] */
-    bool lights_changed;        /* since the last relight */
-    bool has_values;            /* to paint on the bodies */
+    parian_body_optics *optics;  /* [body_count] */
+    uint32_t instance_count;     /* at least 1 */
+    parian_placement *instances; /* [instance_count] */
+    parian_bounds bounds;        /* of all instances and the surroundings */
+    bool lights_changed;         /* lights or instances, since the last relight */
+    bool has_values;             /* to paint on the bodies */
     bool timing;
     double pass_start;
     parian_pass_time pass[PARIAN_PASS_COUNT];
     uint32_t picture_width, picture_height; /* of the last draw, 0 before */
+    parian_camera picture_camera;
+    bool picture_stale; /* the last picture shows other light or settings */
 };
 
 /* Bracket a pass: counts its runs and, with timing on, its milliseconds. */
@@ -82,10 +100,16 @@ uint32_t parian_body_register_count(const parian_body *body);
 uint32_t parian_body_register_size(const parian_body *body, uint32_t index);
 
 /* Distance by which a shaded point is lifted along its normal before shadow look-ups, metres,
- * beyond what the shadow texel asks for. */
-float parian_renderer_shadow_lift(const parian_renderer *renderer);
+ * beyond what the shadow texel asks for; scale: of its instance, 1 for surroundings. */
+float parian_renderer_shadow_lift(const parian_renderer *renderer, float scale);
 
-/* Tests: a register of a body after relighting. */
+/* Place the shadow maps of a list around all instances. */
+parian_result parian_renderer_fit_shadows(parian_renderer *renderer, parian_light_list *list);
+
+/* renderer_instances.c: one instance where the file has it. Errors: PARIAN_E_NOMEM. */
+parian_result parian_renderer_start_instances(parian_renderer *renderer);
+
+/* Tests: a register of a body of the first instance after relighting. */
 parian_result parian_renderer_read_register(parian_renderer *renderer, uint32_t body,
                                             uint32_t index, float (*value)[3]);
 

@@ -18,18 +18,25 @@
 
 enum { REGISTER_MAX = 2 * PARIAN_MAX_OPERATORS };
 
+/* What all instances of a body share. */
 typedef struct cpu_body {
     parian_kernels kernels;
     parian_restriction restriction;
+    float (*normal)[4], (*albedo)[4], (*values)[4]; /* atlases, or NULL */
+} cpu_body;
+
+/* What a body of one instance has of its own: the light on it and in it. */
+typedef struct cpu_lit {
     uint32_t register_count;
     float (*registers[REGISTER_MAX])[3];
     float (*irradiance)[3], (*local)[3], (*global)[3]; /* [texel_count] */
-    parian_shade_atlas atlas;
-} cpu_body;
+} cpu_lit;
 
 typedef struct cpu_state {
-    cpu_body *body;            /* [body_count] */
-    parian_shade_atlas *atlas; /* [body_count] the same pointers, as shading takes them */
+    cpu_body *body; /* [body_count] */
+    cpu_lit *lit;   /* [lit_count * body_count] bodies of an instance one after the other */
+    parian_shade_atlas *atlas; /* the same count; normal, albedo and values belong to the body */
+    uint32_t lit_count;        /* instances that there is room for */
     parian_cpu_lights lights;
     float (*picture)[4];
     uint8_t (*srgb)[4];
@@ -39,18 +46,24 @@ static void destroy_body(const parian_env *env, cpu_body *made)
 {
     parian_kernels_free(env, &made->kernels);
     parian_restriction_free(env, &made->restriction);
+    parian_free(env, made->normal);
+    parian_free(env, made->albedo);
+    parian_free(env, made->values);
+}
+
+static void destroy_lit(const parian_env *env, cpu_lit *lit, parian_shade_atlas *atlas)
+{
     for (uint32_t r = 0; r < REGISTER_MAX; r++) {
-        parian_free(env, made->registers[r]);
+        parian_free(env, lit->registers[r]);
     }
-    parian_free(env, made->irradiance);
-    parian_free(env, made->local);
-    parian_free(env, made->global);
-    parian_free(env, made->atlas.irradiance);
-    parian_free(env, made->atlas.local);
-    parian_free(env, made->atlas.global);
-    parian_free(env, made->atlas.normal);
-    parian_free(env, made->atlas.albedo);
-    parian_free(env, made->atlas.values);
+    parian_free(env, lit->irradiance);
+    parian_free(env, lit->local);
+    parian_free(env, lit->global);
+    parian_free(env, atlas->irradiance);
+    parian_free(env, atlas->local);
+    parian_free(env, atlas->global);
+    *lit = (cpu_lit){0};
+    *atlas = (parian_shade_atlas){0};
 }
 
 static void cpu_destroy(parian_renderer *renderer)
@@ -60,10 +73,14 @@ static void cpu_destroy(parian_renderer *renderer)
     if (!state) {
         return;
     }
+    for (uint32_t i = 0; i < state->lit_count * renderer->scene->data.body_count; i++) {
+        destroy_lit(env, &state->lit[i], &state->atlas[i]);
+    }
     for (uint32_t b = 0; state->body && b < renderer->scene->data.body_count; b++) {
         destroy_body(env, &state->body[b]);
     }
     parian_free(env, state->body);
+    parian_free(env, state->lit);
     parian_free(env, state->atlas);
     parian_free(env, state->lights.depth);
     parian_free(env, state->picture);
@@ -86,34 +103,17 @@ static bool fill_static(const parian_env *env, const parian_body *body, const fl
     return true;
 }
 
-static bool allocate_body(const parian_env *env, const parian_body *body, cpu_body *made)
-{
-    size_t atlas = (size_t)body->atlas_size * body->atlas_size;
-    made->register_count = parian_body_register_count(body);
-    for (uint32_t r = 0; r < made->register_count; r++) {
-        if (!PARIAN_NEW0(env, made->registers[r], parian_body_register_size(body, r))) {
-            return false;
-        }
-    }
-    return PARIAN_NEW0(env, made->irradiance, body->texel_count) &&
-           PARIAN_NEW0(env, made->local, body->texel_count) &&
-           PARIAN_NEW0(env, made->global, body->texel_count) &&
-           PARIAN_NEW0(env, made->atlas.irradiance, atlas) &&
-           PARIAN_NEW0(env, made->atlas.local, atlas) &&
-           PARIAN_NEW0(env, made->atlas.global, atlas) &&
-           fill_static(env, body, (const float(*)[3])body->texel_normal_map, &made->atlas.normal) &&
-           fill_static(env, body, (const float(*)[3])body->texel_albedo, &made->atlas.albedo);
-}
-
 static parian_result create_body(const parian_env *env, const parian_body *body, cpu_body *made)
 {
     parian_result result = parian_kernels_build(env, body, &made->kernels);
     if (result == PARIAN_OK) {
         result = parian_restriction_build(env, body, &made->restriction);
     }
-    if (result == PARIAN_OK && !allocate_body(env, body, made)) {
-        result = parian_fail(env, PARIAN_E_NOMEM, "no memory to light a body of %u texels",
-                             body->texel_count);
+    if (result == PARIAN_OK &&
+        (!fill_static(env, body, (const float(*)[3])body->texel_normal_map, &made->normal) ||
+         !fill_static(env, body, (const float(*)[3])body->texel_albedo, &made->albedo))) {
+        result = parian_fail(env, PARIAN_E_NOMEM, "no memory for an atlas of %u texels a side",
+                             body->atlas_size);
     }
     return result;
 }
@@ -128,96 +128,185 @@ static parian_result cpu_create(parian_renderer *renderer)
         return parian_fail(env, PARIAN_E_NOMEM, "no memory for a renderer");
     }
     renderer->state = state;
-    if (!PARIAN_NEW0(env, state->body, data->body_count) ||
-        !PARIAN_NEW0(env, state->atlas, data->body_count)) {
+    if (!PARIAN_NEW0(env, state->body, data->body_count)) {
         return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u bodies", data->body_count);
     }
-    for (uint32_t b = 0; b < data->body_count; b++) {
-        parian_result result = create_body(env, &data->bodies[b], &state->body[b]);
-        if (result != PARIAN_OK) {
-            return result;
-        }
-        state->atlas[b] = state->body[b].atlas;
+    parian_result result = PARIAN_OK;
+    for (uint32_t b = 0; result == PARIAN_OK && b < data->body_count; b++) {
+        result = create_body(env, &data->bodies[b], &state->body[b]);
     }
+    return result;
+}
+
+/* ---- instances ---- */
+
+static parian_result create_lit(const parian_env *env, const parian_body *body,
+                                const cpu_body *shared, cpu_lit *lit, parian_shade_atlas *atlas)
+{
+    const size_t area = (size_t)body->atlas_size * body->atlas_size;
+    bool room = PARIAN_NEW0(env, lit->irradiance, body->texel_count) &&
+                PARIAN_NEW0(env, lit->local, body->texel_count) &&
+                PARIAN_NEW0(env, lit->global, body->texel_count) &&
+                PARIAN_NEW0(env, atlas->irradiance, area) && PARIAN_NEW0(env, atlas->local, area) &&
+                PARIAN_NEW0(env, atlas->global, area);
+    atlas->normal = shared->normal;
+    atlas->albedo = shared->albedo;
+    atlas->values = shared->values;
+    lit->register_count = parian_body_register_count(body);
+    for (uint32_t r = 0; room && r < lit->register_count; r++) {
+        room = PARIAN_NEW0(env, lit->registers[r], parian_body_register_size(body, r));
+    }
+    return room ? PARIAN_OK
+                : parian_fail(env, PARIAN_E_NOMEM, "no memory to light a body of %u texels",
+                              body->texel_count);
+}
+
+static void shrink(const parian_env *env, cpu_state *state, uint32_t instance_count,
+                   uint32_t body_count)
+{
+    for (uint32_t i = instance_count * body_count; i < state->lit_count * body_count; i++) {
+        destroy_lit(env, &state->lit[i], &state->atlas[i]);
+    }
+    state->lit_count = instance_count;
+}
+
+/* Longer arrays: what is there moves over. */
+static parian_result lengthen(const parian_env *env, cpu_state *state, uint32_t instance_count,
+                              uint32_t body_count)
+{
+    cpu_lit *lit = NULL;
+    parian_shade_atlas *atlas = NULL;
+    if (!PARIAN_NEW0(env, lit, (size_t)instance_count * body_count) ||
+        !PARIAN_NEW0(env, atlas, (size_t)instance_count * body_count)) {
+        parian_free(env, lit);
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u instances", instance_count);
+    }
+    for (uint32_t i = 0; i < state->lit_count * body_count; i++) {
+        lit[i] = state->lit[i];
+        atlas[i] = state->atlas[i];
+    }
+    parian_free(env, state->lit);
+    parian_free(env, state->atlas);
+    state->lit = lit;
+    state->atlas = atlas;
     return PARIAN_OK;
 }
 
-/* ---- relighting, a pass at a time over all bodies ---- */
-
-static void run_irradiance(parian_renderer *renderer, cpu_state *state)
+static parian_result cpu_resize(parian_renderer *renderer, uint32_t instance_count)
 {
-    for (uint32_t b = 0; b < renderer->scene->data.body_count; b++) {
-        const parian_body_optics *optics = &renderer->optics[b];
-        parian_cpu_irradiance(&renderer->env, &state->lights, &renderer->scene->data.bodies[b],
-                              optics->eta, optics->zonal_transmit, state->body[b].irradiance);
+    const parian_env *env = &renderer->env;
+    const parian_scene_data *data = &renderer->scene->data;
+    cpu_state *state = renderer->state;
+    const uint32_t bodies = data->body_count, before = state->lit_count;
+    if (instance_count <= before) {
+        shrink(env, state, instance_count, bodies);
+        return PARIAN_OK;
+    }
+    parian_result result = lengthen(env, state, instance_count, bodies);
+    if (result != PARIAN_OK) {
+        return result;
+    }
+    state->lit_count = instance_count;
+    for (uint32_t i = before * bodies; result == PARIAN_OK && i < instance_count * bodies; i++) {
+        result = create_lit(env, &data->bodies[i % bodies], &state->body[i % bodies],
+                            &state->lit[i], &state->atlas[i]);
+    }
+    if (result != PARIAN_OK) {
+        shrink(env, state, before, bodies);
+    }
+    return result;
+}
+
+/* ---- relighting, a pass at a time over all bodies of all instances ---- */
+
+/* One body of one instance, on which a pass works. */
+typedef struct pass_body {
+    const parian_placement *at;
+    const parian_body_optics *optics;
+    const parian_body *data;
+    const cpu_body *shared;
+    cpu_lit *lit;
+    parian_shade_atlas *atlas;
+} pass_body;
+
+static void run_irradiance(parian_renderer *renderer, const pass_body *one)
+{
+    const cpu_state *state = renderer->state;
+    parian_cpu_irradiance(&renderer->env, &state->lights, one->data, one->at, one->optics->eta,
+                          one->optics->zonal_transmit, one->lit->irradiance);
+}
+
+static void run_restrict(parian_renderer *renderer, const pass_body *one)
+{
+    parian_cpu_restrict(&renderer->env, &one->shared->restriction,
+                        (const float(*)[3])one->lit->irradiance, one->lit->registers[0],
+                        one->lit->registers[1]);
+}
+
+static void run_product(parian_renderer *renderer, const pass_body *one)
+{
+    cpu_lit *lit = one->lit;
+    for (uint32_t r = 2; r < lit->register_count; r++) {
+        memset(lit->registers[r], 0,
+               parian_body_register_size(one->data, r) * sizeof *lit->registers[r]);
+    }
+    for (uint32_t o = 0; o < one->data->operator_count; o++) {
+        const parian_operator *op = &one->data->operators[o];
+        parian_operator_apply(&renderer->env, op,
+                              (const float(*)[3])lit->registers[op->source_register],
+                              lit->registers[op->target_register], true);
     }
 }
 
-static void run_restrict(parian_renderer *renderer, cpu_state *state)
+static void run_filter(parian_renderer *renderer, const pass_body *one)
 {
-    for (uint32_t b = 0; b < renderer->scene->data.body_count; b++) {
-        cpu_body *body = &state->body[b];
-        parian_cpu_restrict(&renderer->env, &body->restriction, (const float(*)[3])body->irradiance,
-                            body->registers[0], body->registers[1]);
-    }
+    parian_cpu_filter(&renderer->env, one->data, &one->shared->kernels,
+                      (const float(*)[3])one->lit->irradiance,
+                      (const float(*)[3])one->lit->registers[1], one->lit->local, one->lit->global);
 }
 
-static void run_product(parian_renderer *renderer, cpu_state *state)
+static void run_gutter(parian_renderer *renderer, const pass_body *one)
 {
-    for (uint32_t b = 0; b < renderer->scene->data.body_count; b++) {
-        const parian_body *data = &renderer->scene->data.bodies[b];
-        cpu_body *body = &state->body[b];
-        for (uint32_t r = 2; r < body->register_count; r++) {
-            memset(body->registers[r], 0,
-                   parian_body_register_size(data, r) * sizeof *body->registers[r]);
-        }
-        for (uint32_t o = 0; o < data->operator_count; o++) {
-            const parian_operator *op = &data->operators[o];
-            parian_operator_apply(&renderer->env, op,
-                                  (const float(*)[3])body->registers[op->source_register],
-                                  body->registers[op->target_register], true);
-        }
-    }
+    (void)renderer;
+    parian_atlas_fill(one->data, (const float(*)[3])one->lit->irradiance, one->atlas->irradiance);
+    parian_atlas_fill(one->data, (const float(*)[3])one->lit->local, one->atlas->local);
+    parian_atlas_fill(one->data, (const float(*)[3])one->lit->global, one->atlas->global);
 }
 
-static void run_filter(parian_renderer *renderer, cpu_state *state)
+static void run_all(parian_renderer *renderer, void (*run)(parian_renderer *, const pass_body *))
 {
-    for (uint32_t b = 0; b < renderer->scene->data.body_count; b++) {
-        cpu_body *body = &state->body[b];
-        parian_cpu_filter(&renderer->env, &renderer->scene->data.bodies[b], &body->kernels,
-                          (const float(*)[3])body->irradiance,
-                          (const float(*)[3])body->registers[1], body->local, body->global);
-    }
-}
-
-static void run_gutter(parian_renderer *renderer, cpu_state *state)
-{
-    for (uint32_t b = 0; b < renderer->scene->data.body_count; b++) {
-        const parian_body *data = &renderer->scene->data.bodies[b];
-        cpu_body *body = &state->body[b];
-        parian_atlas_fill(data, (const float(*)[3])body->irradiance, body->atlas.irradiance);
-        parian_atlas_fill(data, (const float(*)[3])body->local, body->atlas.local);
-        parian_atlas_fill(data, (const float(*)[3])body->global, body->atlas.global);
+    cpu_state *state = renderer->state;
+    const uint32_t count = renderer->scene->data.body_count;
+    for (uint32_t i = 0; i < renderer->instance_count * count; i++) {
+        const uint32_t b = i % count;
+        const pass_body one = {&renderer->instances[i / count],
+                               &renderer->optics[b],
+                               &renderer->scene->data.bodies[b],
+                               &state->body[b],
+                               &state->lit[i],
+                               &state->atlas[i]};
+        run(renderer, &one);
     }
 }
 
 static parian_result cpu_relight(parian_renderer *renderer)
 {
-    static void (*const passes[])(parian_renderer *, cpu_state *) = {
+    static void (*const passes[])(parian_renderer *, const pass_body *) = {
         run_irradiance, run_restrict, run_product, run_filter, run_gutter};
     cpu_state *state = renderer->state;
     state->lights.list = &renderer->lights;
-    state->lights.lift = parian_renderer_shadow_lift(renderer);
+    state->lights.lift = parian_renderer_shadow_lift(renderer, 1.0f);
     parian_renderer_begin_pass(renderer);
     parian_result result =
-        parian_cpu_shadow(&renderer->env, &renderer->scene->data, &state->lights);
+        parian_cpu_shadow(&renderer->env, &renderer->scene->data, renderer->instances,
+                          renderer->instance_count, &state->lights);
     if (result != PARIAN_OK) {
         return result;
     }
     parian_renderer_end_pass(renderer, PARIAN_PASS_SHADOW);
     for (int p = 0; p < 5; p++) {
         parian_renderer_begin_pass(renderer);
-        passes[p](renderer, state);
+        run_all(renderer, passes[p]);
         parian_renderer_end_pass(renderer, (parian_pass)(PARIAN_PASS_IRRADIANCE + p));
     }
     return PARIAN_OK;
@@ -238,6 +327,8 @@ static parian_result shade_picture(parian_renderer *renderer, const parian_draw_
     }
     parian_shade_desc shade = {.scene = &renderer->scene->data,
                                .optics = renderer->optics,
+                               .instances = renderer->instances,
+                               .instance_count = renderer->instance_count,
                                .atlas = state->atlas,
                                .lights = &state->lights,
                                .settings = &renderer->settings,
@@ -253,25 +344,35 @@ static parian_result shade_picture(parian_renderer *renderer, const parian_draw_
     return result;
 }
 
-static parian_result cpu_draw(parian_renderer *renderer, const parian_draw_desc *desc)
+static parian_result prepare_picture(const parian_env *env, cpu_state *state, uint32_t width,
+                                     uint32_t height)
 {
-    cpu_state *state = renderer->state;
-    const parian_env *env = &renderer->env;
-    size_t count = (size_t)desc->width * desc->height;
-    renderer->picture_width = 0;
+    const size_t count = (size_t)width * height;
     parian_free(env, state->picture);
     parian_free(env, state->srgb);
     state->srgb = NULL;
     if (!PARIAN_NEW(env, state->picture, count) || !PARIAN_NEW(env, state->srgb, count)) {
-        return parian_fail(env, PARIAN_E_NOMEM, "no memory for a picture of %u x %u pixels",
-                           desc->width, desc->height);
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for a picture of %u x %u pixels", width,
+                           height);
     }
-    parian_renderer_begin_pass(renderer);
-    parian_result result = shade_picture(renderer, desc);
-    if (result != PARIAN_OK) {
-        return result;
+    return PARIAN_OK;
+}
+
+static parian_result cpu_draw(parian_renderer *renderer, const parian_draw_desc *desc, bool shade)
+{
+    cpu_state *state = renderer->state;
+    const size_t count = (size_t)desc->width * desc->height;
+    if (shade) {
+        parian_result result = prepare_picture(&renderer->env, state, desc->width, desc->height);
+        parian_renderer_begin_pass(renderer);
+        if (result == PARIAN_OK) {
+            result = shade_picture(renderer, desc);
+        }
+        if (result != PARIAN_OK) {
+            return result;
+        }
+        parian_renderer_end_pass(renderer, PARIAN_PASS_SHADE);
     }
-    parian_renderer_end_pass(renderer, PARIAN_PASS_SHADE);
     parian_renderer_begin_pass(renderer);
     const float(*picture)[4] = (const float(*)[4])state->picture;
     bool plain = parian_view_is_plain(renderer->settings.view);
@@ -297,10 +398,11 @@ static parian_result cpu_read_picture(parian_renderer *renderer, float (*radianc
 
 /* ---- arrays ---- */
 
-static parian_result cpu_read_texels(parian_renderer *renderer, uint32_t body,
+static parian_result cpu_read_texels(parian_renderer *renderer, uint32_t instance, uint32_t body,
                                      parian_texel_result which, float (*value)[3])
 {
-    const cpu_body *made = &((const cpu_state *)renderer->state)->body[body];
+    const uint32_t lit = instance * renderer->scene->data.body_count + body;
+    const cpu_lit *made = &((const cpu_state *)renderer->state)->lit[lit];
     const float(*from)[3] = (const float(*)[3])(which == PARIAN_RESULT_IRRADIANCE ? made->irradiance
                                                 : which == PARIAN_RESULT_LOCAL    ? made->local
                                                                                   : made->global);
@@ -315,19 +417,21 @@ static parian_result cpu_set_values(parian_renderer *renderer, uint32_t body,
     cpu_body *made = &state->body[body];
     const parian_body *data = &renderer->scene->data.bodies[body];
     const size_t count = (size_t)data->atlas_size * data->atlas_size;
-    if (!made->atlas.values && !PARIAN_NEW(&renderer->env, made->atlas.values, count)) {
+    if (!made->values && !PARIAN_NEW(&renderer->env, made->values, count)) {
         return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for the values of %u texels",
                            data->texel_count);
     }
-    parian_atlas_fill(data, value, made->atlas.values);
-    state->atlas[body].values = made->atlas.values;
+    parian_atlas_fill(data, value, made->values);
+    for (uint32_t i = 0; i < state->lit_count; i++) {
+        state->atlas[i * renderer->scene->data.body_count + body].values = made->values;
+    }
     return PARIAN_OK;
 }
 
 static parian_result cpu_read_register(parian_renderer *renderer, uint32_t body, uint32_t index,
                                        float (*value)[3])
 {
-    const cpu_body *made = &((const cpu_state *)renderer->state)->body[body];
+    const cpu_lit *made = &((const cpu_state *)renderer->state)->lit[body];
     uint32_t size = parian_body_register_size(&renderer->scene->data.bodies[body], index);
     memcpy(value, made->registers[index], size * sizeof *value);
     return PARIAN_OK;
@@ -340,6 +444,14 @@ static uint64_t cpu_memory(const parian_renderer *renderer)
 }
 
 const parian_backend_table parian_cpu_backend = {
-    cpu_create,      cpu_destroy,    cpu_relight,       cpu_draw,   cpu_read_picture,
-    cpu_read_texels, cpu_set_values, cpu_read_register, cpu_memory,
+    .create = cpu_create,
+    .destroy = cpu_destroy,
+    .resize = cpu_resize,
+    .relight = cpu_relight,
+    .draw = cpu_draw,
+    .read_picture = cpu_read_picture,
+    .read_texels = cpu_read_texels,
+    .set_values = cpu_set_values,
+    .read_register = cpu_read_register,
+    .memory = cpu_memory,
 };

@@ -5,6 +5,8 @@
  */
 #include "cpu/cpu_lights.h"
 
+#include <string.h>
+
 #include "core/fresnel.h"
 #include "core/memory.h"
 #include "cpu/cpu_raster.h"
@@ -16,7 +18,7 @@ enum { TEXEL_PIECE = 1024 };
 /* ---- shadow maps ---- */
 
 typedef struct shadow_target {
-    const parian_shadow_layer *layer;
+    float row[4][4]; /* of the layer, for points before they are placed */
     const float (*position)[3];
     const uint32_t (*triangle)[3];
     float *depth;
@@ -25,7 +27,7 @@ typedef struct shadow_target {
 static void shadow_fragment(void *context, uint32_t pixel, uint32_t triangle, const float share[3])
 {
     const shadow_target *target = context;
-    const float *row = target->layer->row[2];
+    const float *row = target->row[2];
     float sum = share[0] + share[1] + share[2], depth = 0.0f;
     for (int k = 0; k < 3; k++) {
         const float *p = target->position[target->triangle[triangle][k]];
@@ -37,48 +39,71 @@ static void shadow_fragment(void *context, uint32_t pixel, uint32_t triangle, co
     }
 }
 
+/* A mesh and where it stands. */
+typedef struct caster {
+    const float (*position)[3];
+    const uint32_t (*triangle)[3];
+    uint32_t count;
+    const parian_placement *at; /* NULL: where the file has it */
+} caster;
+
 static parian_result draw_caster(const parian_env *env, uint32_t size,
-                                 const parian_shadow_layer *layer, const float (*position)[3],
-                                 const uint32_t (*triangle)[3], uint32_t count, float *depth)
+                                 const parian_shadow_layer *layer, const caster *what, float *depth)
 {
-    shadow_target target = {layer, position, triangle, depth};
+    shadow_target target = {.position = what->position, .triangle = what->triangle, .depth = depth};
+    for (int r = 0; r < 4; r++) {
+        if (what->at) {
+            placement_fold(what->at, layer->row[r], target.row[r]);
+        } else {
+            memcpy(target.row[r], layer->row[r], sizeof target.row[r]);
+        }
+    }
     parian_raster_desc desc = {.width = size,
                                .height = size,
-                               .triangle_count = count,
-                               .triangle = triangle,
-                               .position = position,
+                               .triangle_count = what->count,
+                               .triangle = what->triangle,
+                               .position = what->position,
                                .near_w = layer->perspective ? layer->near_m : 0.0f,
                                .fragment = shadow_fragment,
                                .context = &target};
     for (int k = 0; k < 4; k++) {
-        desc.row_x[k] = layer->row[0][k];
-        desc.row_y[k] = -layer->row[1][k]; /* shadow maps keep row 0 at y = -1, as GL does */
-        desc.row_w[k] = layer->row[3][k];
+        desc.row_x[k] = target.row[0][k];
+        desc.row_y[k] = -target.row[1][k]; /* shadow maps keep row 0 at y = -1, as GL does */
+        desc.row_w[k] = target.row[3][k];
     }
     return parian_raster_run(env, &desc);
 }
 
-static parian_result draw_layer(const parian_env *env, const parian_scene_data *scene,
-                                uint32_t size, const parian_shadow_layer *layer, float *depth)
+static parian_result draw_bodies(const parian_env *env, const parian_scene_data *scene,
+                                 const parian_placement *at, uint32_t size,
+                                 const parian_shadow_layer *layer, float *depth)
 {
     parian_result result = PARIAN_OK;
-    for (size_t i = 0; i < (size_t)size * size; i++) {
-        depth[i] = 1.0f;
-    }
     for (uint32_t b = 0; result == PARIAN_OK && b < scene->body_count; b++) {
         const parian_body *body = &scene->bodies[b];
-        result = draw_caster(env, size, layer, (const float(*)[3])body->vertex_position,
-                             (const uint32_t(*)[3])body->triangle, body->triangle_count, depth);
+        const caster what = {(const float(*)[3])body->vertex_position,
+                             (const uint32_t(*)[3])body->triangle, body->triangle_count, at};
+        result = draw_caster(env, size, layer, &what, depth);
     }
+    return result;
+}
+
+static parian_result draw_surroundings(const parian_env *env, const parian_scene_data *scene,
+                                       uint32_t size, const parian_shadow_layer *layer,
+                                       float *depth)
+{
+    parian_result result = PARIAN_OK;
     for (uint32_t s = 0; result == PARIAN_OK && s < scene->surrounding_count; s++) {
         const parian_surrounding *piece = &scene->surroundings[s];
-        result = draw_caster(env, size, layer, (const float(*)[3])piece->vertex_position,
-                             (const uint32_t(*)[3])piece->triangle, piece->triangle_count, depth);
+        const caster what = {(const float(*)[3])piece->vertex_position,
+                             (const uint32_t(*)[3])piece->triangle, piece->triangle_count, NULL};
+        result = draw_caster(env, size, layer, &what, depth);
     }
     return result;
 }
 
 parian_result parian_cpu_shadow(const parian_env *env, const parian_scene_data *scene,
+                                const parian_placement *instances, uint32_t instance_count,
                                 parian_cpu_lights *lights)
 {
     const parian_light_list *list = lights->list;
@@ -89,9 +114,18 @@ parian_result parian_cpu_shadow(const parian_env *env, const parian_scene_data *
         return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u shadow maps of %u texels a side",
                            list->layer_count, list->shadow_size);
     }
+    for (size_t i = 0; i < area * list->layer_count; i++) {
+        lights->depth[i] = 1.0f;
+    }
     for (uint32_t l = 0; result == PARIAN_OK && l < list->layer_count; l++) {
-        result =
-            draw_layer(env, scene, list->shadow_size, &list->layer[l], lights->depth + l * area);
+        const parian_shadow_layer *layer = &list->layer[l];
+        float *depth = lights->depth + l * area;
+        for (uint32_t i = 0; result == PARIAN_OK && i < instance_count; i++) {
+            result = draw_bodies(env, scene, &instances[i], list->shadow_size, layer, depth);
+        }
+        if (result == PARIAN_OK) {
+            result = draw_surroundings(env, scene, list->shadow_size, layer, depth);
+        }
     }
     return result;
 }
@@ -103,7 +137,7 @@ static float row_at(const float row[4], const float p[3])
 
 /* Light that passes one map; false where the point does not fall on it. */
 static bool look_up_layer(const parian_cpu_lights *lights, uint32_t index, const float p[3],
-                          const float n[3], float *lit)
+                          const float n[3], float scale, float *lit)
 {
     const parian_shadow_layer *layer = &lights->list->layer[index];
     const float size = (float)lights->list->shadow_size;
@@ -113,7 +147,7 @@ static bool look_up_layer(const parian_cpu_lights *lights, uint32_t index, const
     }
     float texel = layer->texel_scale * w;
     vec3_copy(q, p);
-    vec3_add_scaled(q, n, 1.5f * texel + lights->lift);
+    vec3_add_scaled(q, n, 1.5f * texel + scale * lights->lift);
     w = row_at(layer->row[3], q);
     if (layer->perspective && w <= layer->near_m) {
         return false;
@@ -134,11 +168,11 @@ static bool look_up_layer(const parian_cpu_lights *lights, uint32_t index, const
 }
 
 float parian_cpu_visibility(const parian_cpu_lights *lights, const parian_light_sample *sample,
-                            const float p[3], const float n[3])
+                            const float p[3], const float n[3], float scale)
 {
     float lit = 1.0f;
     for (uint32_t k = 0; k < sample->layer_count; k++) {
-        if (look_up_layer(lights, sample->layer_first + k, p, n, &lit)) {
+        if (look_up_layer(lights, sample->layer_first + k, p, n, scale, &lit)) {
             return lit;
         }
     }
@@ -257,7 +291,7 @@ void parian_cpu_environment_radiance(const parian_light_list *list, const float 
 }
 
 void parian_cpu_environment(const parian_cpu_lights *lights, const float p[3], const float n[3],
-                            const float zonal[3], float eta, float irradiance[3])
+                            const float zonal[3], float eta, float scale, float irradiance[3])
 {
     const parian_light_list *list = lights->list;
     float open[3] = {0}, all[3] = {0};
@@ -270,7 +304,8 @@ void parian_cpu_environment(const parian_cpu_lights *lights, const float p[3], c
         }
         float weight = cosine * (eta > 0.0f ? parian_fresnel_transmittancef(cosine, eta) : 1.0f);
         vec3_add_scaled(all, sample->color, weight);
-        vec3_add_scaled(open, sample->color, weight * parian_cpu_visibility(lights, sample, p, n));
+        vec3_add_scaled(open, sample->color,
+                        weight * parian_cpu_visibility(lights, sample, p, n, scale));
     }
     for (int c = 0; c < 3; c++) {
         irradiance[c] *= all[c] > 0.0f ? open[c] / all[c] : 1.0f;
@@ -282,6 +317,7 @@ void parian_cpu_environment(const parian_cpu_lights *lights, const float p[3], c
 typedef struct irradiance_job {
     const parian_cpu_lights *lights;
     const parian_body *body;
+    const parian_placement *at;
     float eta;
     const float *zonal;
     float (*irradiance)[3];
@@ -290,8 +326,10 @@ typedef struct irradiance_job {
 static void irradiance_of_texel(const irradiance_job *job, uint32_t t, float sum[3])
 {
     const parian_light_list *list = job->lights->list;
-    const float *p = job->body->texel_position[t], *n = job->body->texel_normal[t];
-    float extent = sqrtf(job->body->texel_area[t]);
+    const float scale = job->at->scale, extent = sqrtf(job->body->texel_area[t]) * scale;
+    float p[3], n[3];
+    placement_point(job->at, job->body->texel_position[t], p);
+    placement_normal(job->at, job->body->texel_normal[t], n);
     vec3_set(sum, 0.0f);
     for (uint32_t i = 0; i < list->sample_count; i++) {
         const parian_light_sample *sample = &list->sample[i];
@@ -305,11 +343,12 @@ static void irradiance_of_texel(const irradiance_job *job, uint32_t t, float sum
             continue;
         }
         float weight = cosine * parian_fresnel_transmittancef(cosine, job->eta);
-        vec3_add_scaled(sum, light, weight * parian_cpu_visibility(job->lights, sample, p, n));
+        vec3_add_scaled(sum, light,
+                        weight * parian_cpu_visibility(job->lights, sample, p, n, scale));
     }
     if (list->has_environment) {
         float sky[3];
-        parian_cpu_environment(job->lights, p, n, job->zonal, job->eta, sky);
+        parian_cpu_environment(job->lights, p, n, job->zonal, job->eta, scale, sky);
         vec3_add_scaled(sum, sky, 1.0f);
     }
 }
@@ -324,9 +363,9 @@ static void irradiance_piece(void *context, size_t piece)
 }
 
 void parian_cpu_irradiance(const parian_env *env, const parian_cpu_lights *lights,
-                           const parian_body *body, float eta, const float zonal[3],
-                           float (*irradiance)[3])
+                           const parian_body *body, const parian_placement *at, float eta,
+                           const float zonal[3], float (*irradiance)[3])
 {
-    irradiance_job job = {lights, body, eta, zonal, irradiance};
+    irradiance_job job = {lights, body, at, eta, zonal, irradiance};
     parian_par(env, (body->texel_count + TEXEL_PIECE - 1) / TEXEL_PIECE, irradiance_piece, &job);
 }

@@ -10,16 +10,18 @@
 
 #include "core/body.h"
 #include "lights/light_list.h"
+#include "placement.h"
 
 typedef struct parian_cpu_lights {
     const parian_light_list *list;
     float *depth; /* [layer_count][shadow_size^2] nearest depth, 1 where nothing is */
-    float lift;   /* metres along the normal before a look-up */
+    float lift;   /* metres along the normal before a look-up, at scale 1 */
 } parian_cpu_lights;
 
-/* Draw all shadow maps of the list; casters are all meshes of the scene. Replaces lights->depth.
- * Errors: PARIAN_E_NOMEM. */
+/* Draw all shadow maps of the list; casters are the bodies of all instances and the surroundings.
+ * Replaces lights->depth. Errors: PARIAN_E_NOMEM. */
 parian_result parian_cpu_shadow(const parian_env *env, const parian_scene_data *scene,
+                                const parian_placement *instances, uint32_t instance_count,
                                 parian_cpu_lights *lights);
 
 /* Light of a sample at a point: direction towards the light and irradiance on a plane perpendicular
@@ -28,22 +30,23 @@ parian_result parian_cpu_shadow(const parian_env *env, const parian_scene_data *
 void parian_cpu_light_at(const parian_light_list *list, const parian_light_sample *sample,
                          const float p[3], float extent, float to_light[3], float irradiance[3]);
 
-/* Share of a sample's light that reaches a point with a unit normal, in [0, 1]. */
+/* Share of a sample's light that reaches a point with a unit normal, in [0, 1]. scale: of the
+ * point's instance, 1 for surroundings; it scales the lift. */
 float parian_cpu_visibility(const parian_cpu_lights *lights, const parian_light_sample *sample,
-                            const float p[3], const float n[3]);
+                            const float p[3], const float n[3], float scale);
 
 /* Irradiance of the environment with the zonal coefficients of a cosine lobe, and shadows by
  * probes. eta: weigh probes by F_t, or 0 for none. */
 void parian_cpu_environment(const parian_cpu_lights *lights, const float p[3], const float n[3],
-                            const float zonal[3], float eta, float irradiance[3]);
+                            const float zonal[3], float eta, float scale, float irradiance[3]);
 
 /* Radiance of the environment from a direction, from its nine coefficients. */
 void parian_cpu_environment_radiance(const parian_light_list *list, const float direction[3],
                                      float radiance[3]);
 
-/* E of every texel of a body: [texel_count]. */
+/* E of every texel of a body that stands at a place: [texel_count]. */
 void parian_cpu_irradiance(const parian_env *env, const parian_cpu_lights *lights,
-                           const parian_body *body, float eta, const float zonal[3],
-                           float (*irradiance)[3]);
+                           const parian_body *body, const parian_placement *at, float eta,
+                           const float zonal[3], float (*irradiance)[3]);
 
 #endif

@@ -14,7 +14,8 @@
 
 enum { PIXEL_PIECE = 4096, NOTHING = 0xFFFFFFFF };
 
-/* What is seen through a sample: mesh (bodies first, then surroundings), triangle, place in it. */
+/* What is seen through a sample: mesh (the bodies of each instance, then the surroundings),
+ * triangle, place in it. */
 typedef struct seen_point {
     uint32_t mesh, triangle;
     float b0, b1, depth;
@@ -25,6 +26,9 @@ typedef struct mesh_view {
     const uint32_t (*triangle)[3];
     const float (*corner_normal)[3][3];
     uint32_t triangle_count;
+    bool is_body;
+    uint32_t index;      /* of the body or surrounding */
+    parian_placement at; /* where it stands */
 } mesh_view;
 
 typedef struct draw_job {
@@ -32,21 +36,34 @@ typedef struct draw_job {
     seen_point *seen;
     uint32_t mesh_index;
     mesh_view mesh;
+    float clip[16]; /* for the mesh before it is placed */
     float (*radiance)[4];
 } draw_job;
 
-static mesh_view view_mesh(const parian_scene_data *scene, uint32_t mesh)
+static mesh_view view_mesh(const parian_shade_desc *desc, uint32_t mesh)
 {
-    if (mesh < scene->body_count) {
-        const parian_body *body = &scene->bodies[mesh];
+    static const parian_placement stay = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 1};
+    const parian_scene_data *scene = desc->scene;
+    if (mesh < desc->instance_count * scene->body_count) {
+        uint32_t b = mesh % scene->body_count;
+        const parian_body *body = &scene->bodies[b];
         return (mesh_view){(const float(*)[3])body->vertex_position,
                            (const uint32_t(*)[3])body->triangle,
-                           (const float(*)[3][3])body->corner_normal, body->triangle_count};
+                           (const float(*)[3][3])body->corner_normal,
+                           body->triangle_count,
+                           true,
+                           b,
+                           desc->instances[mesh / scene->body_count]};
     }
-    const parian_surrounding *piece = &scene->surroundings[mesh - scene->body_count];
+    uint32_t s = mesh - desc->instance_count * scene->body_count;
+    const parian_surrounding *piece = &scene->surroundings[s];
     return (mesh_view){(const float(*)[3])piece->vertex_position,
                        (const uint32_t(*)[3])piece->triangle,
-                       (const float(*)[3][3])piece->corner_normal, piece->triangle_count};
+                       (const float(*)[3][3])piece->corner_normal,
+                       piece->triangle_count,
+                       false,
+                       s,
+                       stay};
 }
 
 /* ---- visibility ---- */
@@ -54,7 +71,7 @@ static mesh_view view_mesh(const parian_scene_data *scene, uint32_t mesh)
 static void see_fragment(void *context, uint32_t pixel, uint32_t triangle, const float share[3])
 {
     draw_job *job = context;
-    const float *clip = job->desc->view->clip;
+    const float *clip = job->clip;
     float sum = share[0] + share[1] + share[2], depth = 0.0f;
     for (int k = 0; k < 3; k++) {
         const float *p = job->mesh.position[job->mesh.triangle[triangle][k]];
@@ -68,9 +85,10 @@ static void see_fragment(void *context, uint32_t pixel, uint32_t triangle, const
 
 static parian_result see_mesh(const parian_env *env, draw_job *job, uint32_t mesh)
 {
-    const float *clip = job->desc->view->clip;
+    const float *clip = job->clip;
     job->mesh_index = mesh;
-    job->mesh = view_mesh(job->desc->scene, mesh);
+    job->mesh = view_mesh(job->desc, mesh);
+    placement_fold_matrix(&job->mesh.at, job->desc->view->clip, job->clip);
     parian_raster_desc raster = {.width = job->desc->width,
                                  .height = job->desc->height,
                                  .triangle_count = job->mesh.triangle_count,
@@ -120,16 +138,18 @@ static float ggx(float alpha, float n_l, float n_v, float n_h)
 
 /* Cosine towards the viewer. A normal that interpolation or the map turned away from a triangle
  * that is seen counts as grazing: without this, F_t would draw black lines there. */
-static float seen_cosine(const parian_body *body, uint32_t triangle, const float n[3],
+static float seen_cosine(const mesh_view *mesh, uint32_t triangle, const float n[3],
                          const float v[3])
 {
-    const float *a = body->vertex_position[body->triangle[triangle][0]];
-    float e1[3], e2[3], facet[3];
-    vec3_sub(e1, body->vertex_position[body->triangle[triangle][1]], a);
-    vec3_sub(e2, body->vertex_position[body->triangle[triangle][2]], a);
+    const uint32_t *corner = mesh->triangle[triangle];
+    const float *a = mesh->position[corner[0]];
+    float e1[3], e2[3], facet[3], placed[3];
+    vec3_sub(e1, mesh->position[corner[1]], a);
+    vec3_sub(e2, mesh->position[corner[2]], a);
     vec3_cross(facet, e1, e2);
     vec3_normalize(facet);
-    float facing = fabsf(vec3_dot(facet, v));
+    placement_normal(&mesh->at, facet, placed);
+    float facing = fabsf(vec3_dot(placed, v));
     return fmaxf(fmaxf(vec3_dot(n, v), fminf(facing, 0.1f)), 1e-3f);
 }
 
@@ -141,10 +161,11 @@ typedef struct body_point {
 } body_point;
 
 /* Surface reflection of lights and environment. */
-static void reflect_lights(const parian_shade_desc *desc, float eta, const body_point *at,
-                           float sum[3])
+static void reflect_lights(const parian_shade_desc *desc, float eta, float scale,
+                           const body_point *at, float sum[3])
 {
     const parian_light_list *list = desc->lights->list;
+    const float extent = scale * desc->lights->lift;
     float roughness = desc->settings->roughness > 0.0f ? desc->settings->roughness : 0.35f;
     float alpha = fmaxf(roughness * roughness, 1e-3f);
     vec3_set(sum, 0.0f);
@@ -154,7 +175,7 @@ static void reflect_lights(const parian_shade_desc *desc, float eta, const body_
         if (sample->kind == PARIAN_SAMPLE_PROBE) {
             continue;
         }
-        parian_cpu_light_at(list, sample, at->p, desc->lights->lift, l, light);
+        parian_cpu_light_at(list, sample, at->p, extent, l, light);
         float n_l = vec3_dot(at->n, l);
         if (n_l <= 0.0f || vec3_dot(at->smooth, l) <= 0.0f ||
             light[0] + light[1] + light[2] <= 0.0f) {
@@ -166,7 +187,8 @@ static void reflect_lights(const parian_shade_desc *desc, float eta, const body_
         float lobe = ggx(alpha, n_l, at->n_v, fmaxf(vec3_dot(at->n, h), 0.0f));
         lobe *= 1.0f - parian_fresnel_transmittancef(vec3_dot(l, h), eta);
         vec3_add_scaled(sum, light,
-                        lobe * parian_cpu_visibility(desc->lights, sample, at->p, at->smooth));
+                        lobe *
+                            parian_cpu_visibility(desc->lights, sample, at->p, at->smooth, scale));
     }
     if (list->has_environment) {
         float mirrored[3] = {-at->v[0], -at->v[1], -at->v[2]}, sky[3];
@@ -178,10 +200,9 @@ static void reflect_lights(const parian_shade_desc *desc, float eta, const body_
 }
 
 /* Scattered light of a view mode at a point: what leaves, times pi, before Fresnel. */
-static void scattered(const parian_shade_desc *desc, uint32_t b, const float uv[2], float value[3])
+static void scattered(const parian_shade_desc *desc, const parian_shade_atlas *atlas, uint32_t size,
+                      const float uv[2], float value[3])
 {
-    const parian_shade_atlas *atlas = &desc->atlas[b];
-    uint32_t size = desc->scene->bodies[b].atlas_size;
     parian_view_mode view = desc->settings->view;
     float part[3];
     vec3_set(value, 0.0f);
@@ -221,39 +242,42 @@ static float exit_factor(const parian_shade_desc *desc, uint32_t b, float n_v, i
 }
 
 /* at: p, smooth and v are set. */
-static void shade_body(const parian_shade_desc *desc, uint32_t b, uint32_t triangle,
+static void shade_body(const parian_shade_desc *desc, const mesh_view *mesh, const seen_point *seen,
                        const float uv[2], body_point *at, float out[3])
 {
     const parian_settings *settings = desc->settings;
-    const parian_body *body = &desc->scene->bodies[b];
+    const parian_shade_atlas *atlas = &desc->atlas[seen->mesh];
+    const uint32_t b = mesh->index, size = desc->scene->bodies[b].atlas_size;
     vec3_copy(at->n, at->smooth);
-    if (desc->atlas[b].normal && !settings->no_normal_map) {
-        fetch_atlas((const float(*)[4])desc->atlas[b].normal, body->atlas_size, uv, at->n);
+    if (atlas->normal && !settings->no_normal_map) {
+        float mapped[3];
+        fetch_atlas((const float(*)[4])atlas->normal, size, uv, mapped);
+        placement_normal(&mesh->at, mapped, at->n);
         vec3_normalize(at->n);
     }
-    at->n_v = seen_cosine(body, triangle, at->n, at->v);
+    at->n_v = seen_cosine(mesh, seen->triangle, at->n, at->v);
     if (settings->view == PARIAN_VIEW_NORMALS) {
         vec3_set(out, 0.5f);
         vec3_add_scaled(out, at->n, 0.5f);
         return;
     }
     if (settings->view == PARIAN_VIEW_CHARTS) {
-        parian_chart_color(body->triangle_chart[triangle], out);
+        parian_chart_color(desc->scene->bodies[b].triangle_chart[seen->triangle], out);
         vec3_scale(out, 0.3f + 0.7f * at->n_v);
         return;
     }
     if (settings->view == PARIAN_VIEW_VALUES) {
-        fetch_atlas((const float(*)[4])desc->atlas[b].values, body->atlas_size, uv, out);
+        fetch_atlas((const float(*)[4])atlas->values, size, uv, out);
         return;
     }
-    scattered(desc, b, uv, out);
+    scattered(desc, atlas, size, uv, out);
     for (int c = 0; c < 3; c++) {
         out[c] = fmaxf(out[c] * exit_factor(desc, b, at->n_v, c), 0.0f);
     }
     bool whole = settings->view == PARIAN_VIEW_COMBINED || settings->view == PARIAN_VIEW_OPAQUE;
     if (whole && !settings->no_specular && desc->optics[b].eta != 1.0f) {
         float shine[3];
-        reflect_lights(desc, desc->optics[b].eta, at, shine);
+        reflect_lights(desc, desc->optics[b].eta, mesh->at.scale, at, shine);
         vec3_add_scaled(out, shine, 1.0f);
     }
 }
@@ -283,12 +307,13 @@ static void shade_surrounding(const parian_shade_desc *desc, uint32_t index, con
         float cosine = vec3_dot(n, l);
         if (cosine > 0.0f && light[0] + light[1] + light[2] > 0.0f) {
             vec3_add_scaled(out, light,
-                            cosine * parian_cpu_visibility(desc->lights, &list->sample[i], p, n));
+                            cosine *
+                                parian_cpu_visibility(desc->lights, &list->sample[i], p, n, 1.0f));
         }
     }
     if (list->has_environment) {
         float sky[3];
-        parian_cpu_environment(desc->lights, p, n, zonal, 0.0f, sky);
+        parian_cpu_environment(desc->lights, p, n, zonal, 0.0f, 1.0f, sky);
         vec3_add_scaled(out, sky, 1.0f);
     }
     for (int c = 0; c < 3; c++) {
@@ -296,29 +321,38 @@ static void shade_surrounding(const parian_shade_desc *desc, uint32_t index, con
     }
 }
 
-static void shade_point(const parian_shade_desc *desc, const seen_point *seen, float out[4])
+/* Place, smooth normal and atlas position of what is seen. */
+static void find_point(const parian_shade_desc *desc, const mesh_view *mesh, const seen_point *seen,
+                       body_point *at, float uv[2])
 {
-    mesh_view mesh = view_mesh(desc->scene, seen->mesh);
     const float beta[3] = {seen->b0, seen->b1, 1.0f - seen->b0 - seen->b1};
-    float uv[2] = {0};
-    body_point at = {{0}, {0}, {0}, {0}, 0.0f};
-    bool body = seen->mesh < desc->scene->body_count;
+    float p[3] = {0}, n[3] = {0};
     for (int k = 0; k < 3; k++) {
-        vec3_add_scaled(at.p, mesh.position[mesh.triangle[seen->triangle][k]], beta[k]);
-        vec3_add_scaled(at.smooth, mesh.corner_normal[seen->triangle][k], beta[k]);
-        for (int axis = 0; body && axis < 2; axis++) {
+        vec3_add_scaled(p, mesh->position[mesh->triangle[seen->triangle][k]], beta[k]);
+        vec3_add_scaled(n, mesh->corner_normal[seen->triangle][k], beta[k]);
+        for (int axis = 0; mesh->is_body && axis < 2; axis++) {
             uv[axis] +=
-                beta[k] * desc->scene->bodies[seen->mesh].corner_uv[seen->triangle][k][axis];
+                beta[k] * desc->scene->bodies[mesh->index].corner_uv[seen->triangle][k][axis];
         }
     }
-    vec3_normalize(at.smooth);
-    vec3_copy(at.v, desc->view->eye);
-    vec3_add_scaled(at.v, at.p, -desc->view->eye[3]);
-    vec3_normalize(at.v);
-    if (body) {
-        shade_body(desc, seen->mesh, seen->triangle, uv, &at, out);
+    placement_point(&mesh->at, p, at->p);
+    placement_normal(&mesh->at, n, at->smooth);
+    vec3_normalize(at->smooth);
+    vec3_copy(at->v, desc->view->eye);
+    vec3_add_scaled(at->v, at->p, -desc->view->eye[3]);
+    vec3_normalize(at->v);
+}
+
+static void shade_point(const parian_shade_desc *desc, const seen_point *seen, float out[4])
+{
+    const mesh_view mesh = view_mesh(desc, seen->mesh);
+    float uv[2] = {0};
+    body_point at = {{0}, {0}, {0}, {0}, 0.0f};
+    find_point(desc, &mesh, seen, &at, uv);
+    if (mesh.is_body) {
+        shade_body(desc, &mesh, seen, uv, &at, out);
     } else {
-        shade_surrounding(desc, seen->mesh - desc->scene->body_count, at.p, at.smooth, at.v, out);
+        shade_surrounding(desc, mesh.index, at.p, at.smooth, at.v, out);
     }
     out[3] = 1.0f;
 }
@@ -351,7 +385,8 @@ parian_result parian_cpu_shade(const parian_env *env, const parian_shade_desc *d
     for (size_t i = 0; i < total; i++) {
         job.seen[i] = (seen_point){NOTHING, 0, 0.0f, 0.0f, 2.0f};
     }
-    uint32_t meshes = desc->scene->body_count + desc->scene->surrounding_count;
+    uint32_t meshes =
+        desc->instance_count * desc->scene->body_count + desc->scene->surrounding_count;
     for (uint32_t m = 0; result == PARIAN_OK && m < meshes; m++) {
         result = see_mesh(env, &job, m);
     }

@@ -18,8 +18,11 @@ typedef struct parian_shade_atlas {
 
 typedef struct parian_shade_desc {
     const parian_scene_data *scene;
-    const parian_body_optics *optics; /* [body_count] */
-    const parian_shade_atlas *atlas;  /* [body_count] */
+    const parian_body_optics *optics;  /* [body_count] */
+    const parian_placement *instances; /* [instance_count] */
+    uint32_t instance_count;
+    const parian_shade_atlas
+        *atlas; /* [instance_count * body_count] bodies of an instance together */
     const parian_cpu_lights *lights;
     const parian_settings *settings;
     const parian_view *view;

@@ -10,6 +10,9 @@
 static void destroy_objects(parian_renderer *renderer, gl_state *state)
 {
     gl_device *device = &state->device;
+    for (uint32_t i = 0; i < state->lit_count * renderer->scene->data.body_count; i++) {
+        gl_lit_destroy(device, &state->lit[i]);
+    }
     for (uint32_t b = 0; state->body && b < renderer->scene->data.body_count; b++) {
         gl_body_destroy(device, &state->body[b]);
     }
@@ -32,6 +35,7 @@ static void gl_destroy(parian_renderer *renderer)
     gl_state *state = renderer->state;
     if (state) {
         destroy_objects(renderer, state);
+        parian_free(&renderer->env, state->lit);
         parian_free(&renderer->env, state->body);
         parian_free(&renderer->env, state->surrounding);
         parian_free(&renderer->env, state);
@@ -77,6 +81,60 @@ static parian_result gl_create(parian_renderer *renderer)
     return gl_device_leave(&state->device, result, "took in the scene");
 }
 
+/* ---- instances ---- */
+
+static void shrink(gl_state *state, uint32_t instance_count, uint32_t body_count)
+{
+    for (uint32_t i = instance_count * body_count; i < state->lit_count * body_count; i++) {
+        gl_lit_destroy(&state->device, &state->lit[i]);
+    }
+    state->lit_count = instance_count;
+}
+
+/* Longer arrays: the old textures move over, new ones are made. */
+static parian_result grow(parian_renderer *renderer, gl_state *state, uint32_t instance_count)
+{
+    const parian_scene_data *data = &renderer->scene->data;
+    const uint32_t bodies = data->body_count, before = state->lit_count;
+    parian_result result = PARIAN_OK;
+    gl_lit *lit;
+    if (!PARIAN_NEW0(&renderer->env, lit, (size_t)instance_count * bodies)) {
+        return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for %u instances",
+                           instance_count);
+    }
+    for (uint32_t i = 0; i < before * bodies; i++) {
+        lit[i] = state->lit[i];
+    }
+    parian_free(&renderer->env, state->lit);
+    state->lit = lit;
+    state->lit_count = instance_count;
+    for (uint32_t i = before * bodies; result == PARIAN_OK && i < instance_count * bodies; i++) {
+        result = gl_lit_create(&state->device, &data->bodies[i % bodies], &lit[i]);
+    }
+    if (result != PARIAN_OK) {
+        shrink(state, before, bodies);
+    }
+    return result;
+}
+
+static parian_result gl_resize(parian_renderer *renderer, uint32_t instance_count)
+{
+    gl_state *state = renderer->state;
+    parian_result result = PARIAN_OK;
+    if (instance_count == state->lit_count) {
+        return PARIAN_OK;
+    }
+    gl_device_enter(&state->device);
+    if (instance_count < state->lit_count) {
+        shrink(state, instance_count, renderer->scene->data.body_count);
+    } else {
+        result = grow(renderer, state, instance_count);
+    }
+    return gl_device_leave(&state->device, result, "made room for instances");
+}
+
+/* ---- running ---- */
+
 static void end_pass(parian_renderer *renderer, parian_pass pass)
 {
     if (renderer->timing) {
@@ -113,16 +171,17 @@ static parian_result gl_relight(parian_renderer *renderer)
     return gl_device_leave(&state->device, run_relight(renderer), "relit");
 }
 
-static parian_result gl_draw(parian_renderer *renderer, const parian_draw_desc *desc)
+static parian_result gl_draw(parian_renderer *renderer, const parian_draw_desc *desc, bool shade)
 {
     gl_state *state = renderer->state;
-    renderer->picture_width = 0;
     gl_device_enter(&state->device);
     parian_result result = gl_picture_prepare(renderer, desc->width, desc->height);
     if (result == PARIAN_OK) {
-        parian_renderer_begin_pass(renderer);
-        gl_shade_run(renderer, desc);
-        end_pass(renderer, PARIAN_PASS_SHADE);
+        if (shade) {
+            parian_renderer_begin_pass(renderer);
+            gl_shade_run(renderer, desc);
+            end_pass(renderer, PARIAN_PASS_SHADE);
+        }
         parian_renderer_begin_pass(renderer);
         gl_tone_run(renderer, desc);
         end_pass(renderer, PARIAN_PASS_TONE);
@@ -185,12 +244,12 @@ static parian_result read_picked(gl_device *device, const gl_texture *texture,
     return result;
 }
 
-static parian_result gl_read_texels(parian_renderer *renderer, uint32_t body,
+static parian_result gl_read_texels(parian_renderer *renderer, uint32_t instance, uint32_t body,
                                     parian_texel_result which, float (*value)[3])
 {
     gl_state *state = renderer->state;
     const parian_body *data = &renderer->scene->data.bodies[body];
-    const gl_body *made = &state->body[body];
+    const gl_lit *made = &state->lit[instance * renderer->scene->data.body_count + body];
     const gl_texture *texture = which == PARIAN_RESULT_IRRADIANCE ? &made->irradiance
                                 : which == PARIAN_RESULT_LOCAL    ? &made->local
                                                                   : &made->global;
@@ -212,7 +271,7 @@ static parian_result gl_read_register(parian_renderer *renderer, uint32_t body, 
 {
     gl_state *state = renderer->state;
     uint32_t size = parian_body_register_size(&renderer->scene->data.bodies[body], index);
-    return read_picked(&state->device, &state->body[body].registers[index], NULL, size, value);
+    return read_picked(&state->device, &state->lit[body].registers[index], NULL, size, value);
 }
 
 static uint64_t gl_memory(const parian_renderer *renderer)
@@ -221,6 +280,14 @@ static uint64_t gl_memory(const parian_renderer *renderer)
 }
 
 const parian_backend_table parian_gl_backend = {
-    gl_create,      gl_destroy,    gl_relight,       gl_draw,   gl_read_picture,
-    gl_read_texels, gl_set_values, gl_read_register, gl_memory,
+    .create = gl_create,
+    .destroy = gl_destroy,
+    .resize = gl_resize,
+    .relight = gl_relight,
+    .draw = gl_draw,
+    .read_picture = gl_read_picture,
+    .read_texels = gl_read_texels,
+    .set_values = gl_set_values,
+    .read_register = gl_read_register,
+    .memory = gl_memory,
 };

@@ -94,12 +94,6 @@ static parian_result upload_atlases(gl_device *device, const parian_body *body, 
     if (body->texel_albedo) {
         TRY(upload_atlas(device, body, GL_FORMAT_RGBA32F, place_albedo, scratch, &made->albedo));
     }
-    gl_texture *results[6] = {&made->irradiance,       &made->local,       &made->global,
-                              &made->shown_irradiance, &made->shown_local, &made->shown_global};
-    for (int i = 0; i < 6; i++) {
-        TRY(gl_texture_create(device, GL_FORMAT_RGBA32F, body->atlas_size, body->atlas_size, NULL,
-                              results[i]));
-    }
     return PARIAN_OK;
 }
 
@@ -246,9 +240,7 @@ static parian_result create_registers(gl_device *device, const parian_body *body
 {
     made->register_count = parian_body_register_count(body);
     for (uint32_t r = 0; r < made->register_count; r++) {
-        uint32_t size = parian_body_register_size(body, r);
-        TRY(gl_vector_create(device, size, &made->registers[r]));
-        TRY(gl_vector_create(device, size, &made->spare[r]));
+        TRY(gl_vector_create(device, parian_body_register_size(body, r), &made->spare[r]));
     }
     for (uint32_t o = 0; o < body->operator_count; o++) {
         TRY(gl_operator_create(device, &body->operators[o], &made->operators[o]));
@@ -290,22 +282,15 @@ parian_result gl_body_set_values(gl_device *device, const parian_body *body,
 
 void gl_body_destroy(gl_device *device, gl_body *made)
 {
-    gl_texture *textures[] = {&made->position,      &made->normal,
-                              &made->barycentric,   &made->info,
-                              &made->normal_map,    &made->albedo,
-                              &made->irradiance,    &made->local,
-                              &made->global,        &made->shown_irradiance,
-                              &made->shown_local,   &made->shown_global,
-                              &made->feed_offset,   &made->feed,
-                              &made->feed_weight,   &made->kernel,
-                              &made->border,        &made->neighbour,
-                              &made->border_kernel, &made->gutter_source,
-                              &made->gutter_weight, &made->values};
+    gl_texture *textures[] = {
+        &made->position,      &made->normal,        &made->barycentric,   &made->info,
+        &made->normal_map,    &made->albedo,        &made->feed_offset,   &made->feed,
+        &made->feed_weight,   &made->kernel,        &made->border,        &made->neighbour,
+        &made->border_kernel, &made->gutter_source, &made->gutter_weight, &made->values};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++) {
         gl_texture_destroy(device, textures[i]);
     }
     for (uint32_t r = 0; r < GL_REGISTER_MAX; r++) {
-        gl_texture_destroy(device, &made->registers[r]);
         gl_texture_destroy(device, &made->spare[r]);
     }
     for (uint32_t o = 0; o < PARIAN_MAX_OPERATORS; o++) {

@@ -50,18 +50,31 @@ parian_result gl_lights_upload(parian_renderer *renderer)
     return result;
 }
 
+static void draw_instance(parian_renderer *renderer, const parian_shadow_layer *layer,
+                          const parian_placement *at)
+{
+    gl_state *state = renderer->state;
+    float row[4][4];
+    for (int r = 0; r < 4; r++) {
+        placement_fold(at, layer->row[r], row[r]);
+    }
+    gl_pass_vec4(&state->device, "u_row", 4, &row[0][0]);
+    for (uint32_t b = 0; b < renderer->scene->data.body_count; b++) {
+        gl_mesh_draw(&state->device, &state->body[b].mesh);
+    }
+}
+
 static void draw_layer(parian_renderer *renderer, const parian_shadow_layer *layer)
 {
     gl_state *state = renderer->state;
-    const parian_scene_data *data = &renderer->scene->data;
     const float fit[4] = {layer->texel_scale, layer->perspective ? 1.0f : 0.0f, layer->near_m,
                           layer->far_m};
-    gl_pass_vec4(&state->device, "u_row", 4, &layer->row[0][0]);
     gl_pass_vec4(&state->device, "u_fit", 1, fit);
-    for (uint32_t b = 0; b < data->body_count; b++) {
-        gl_mesh_draw(&state->device, &state->body[b].mesh);
+    for (uint32_t i = 0; i < renderer->instance_count; i++) {
+        draw_instance(renderer, layer, &renderer->instances[i]);
     }
-    for (uint32_t s = 0; s < data->surrounding_count; s++) {
+    gl_pass_vec4(&state->device, "u_row", 4, &layer->row[0][0]);
+    for (uint32_t s = 0; s < renderer->scene->data.surrounding_count; s++) {
         gl_mesh_draw(&state->device, &state->surrounding[s]);
     }
 }
@@ -93,7 +106,7 @@ parian_result gl_shadow_run(parian_renderer *renderer)
     return PARIAN_OK;
 }
 
-void gl_pass_lights(const parian_renderer *renderer)
+void gl_pass_lights(const parian_renderer *renderer, float scale)
 {
     gl_state *state = renderer->state;
     gl_device *device = &state->device;
@@ -104,7 +117,7 @@ void gl_pass_lights(const parian_renderer *renderer)
     gl_pass_texture(device, "u_image", &state->image);
     gl_pass_int(device, "u_light_count", (int)list->sample_count);
     gl_pass_int(device, "u_shadow_size", (int)state->shadow.width);
-    gl_pass_float(device, "u_lift", parian_renderer_shadow_lift(renderer));
+    gl_pass_float(device, "u_lift", parian_renderer_shadow_lift(renderer, scale));
     gl_pass_int(device, "u_environment", list->has_environment ? 1 : 0);
     gl_pass_vec3(device, "u_sh", PARIAN_SH_COUNT, &list->environment_sh[0][0]);
 }

@@ -108,28 +108,33 @@ parian_result gl_picture_prepare(parian_renderer *renderer, uint32_t width, uint
 
 /* ---- shading ---- */
 
-static void set_view(const parian_renderer *renderer, const parian_view *view)
+static void set_view(const parian_renderer *renderer, const parian_view *view,
+                     const parian_placement *at)
 {
     gl_device *device = &((gl_state *)renderer->state)->device;
-    gl_pass_lights(renderer);
-    gl_pass_mat4(device, "u_clip", view->clip);
+    float clip[16];
+    placement_fold_matrix(at, view->clip, clip);
+    gl_pass_lights(renderer, at->scale);
+    gl_pass_mat4(device, "u_clip", clip);
+    gl_pass_mat4(device, "u_model", at->model);
     gl_pass_vec4(device, "u_eye", 1, view->eye);
     gl_pass_int(device, "u_view", (int)renderer->settings.view);
 }
 
-static void draw_body(const parian_renderer *renderer, uint32_t b)
+static void draw_body(const parian_renderer *renderer, uint32_t instance, uint32_t b)
 {
     gl_state *state = renderer->state;
     gl_device *device = &state->device;
-    gl_body *body = &state->body[b];
+    const gl_body *body = &state->body[b];
+    const gl_lit *lit = &state->lit[instance * renderer->scene->data.body_count + b];
     const parian_settings *settings = &renderer->settings;
     const parian_body_optics *optics = &renderer->optics[b];
     bool whole = settings->view == PARIAN_VIEW_COMBINED || settings->view == PARIAN_VIEW_OPAQUE;
     float roughness = settings->roughness > 0.0f ? settings->roughness : 0.35f;
     gl_pass_texture(device, "u_irradiance",
-                    settings->view == PARIAN_VIEW_VALUES ? &body->values : &body->shown_irradiance);
-    gl_pass_texture(device, "u_local", &body->shown_local);
-    gl_pass_texture(device, "u_global", &body->shown_global);
+                    settings->view == PARIAN_VIEW_VALUES ? &body->values : &lit->shown_irradiance);
+    gl_pass_texture(device, "u_local", &lit->shown_local);
+    gl_pass_texture(device, "u_global", &lit->shown_global);
     gl_pass_texture(device, "u_normal_map", &body->normal_map);
     gl_pass_texture(device, "u_albedo", &body->albedo);
     gl_pass_int(device, "u_has_normal_map", body->normal_map.name && !settings->no_normal_map);
@@ -151,12 +156,32 @@ static void clear_samples(const parian_renderer *renderer)
     gl->ClearBufferfv(GL_DEPTH, 0, &farthest);
 }
 
+static void draw_meshes(const parian_renderer *renderer, const parian_view *view)
+{
+    static const parian_placement stay = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 1};
+    gl_state *state = renderer->state;
+    gl_device *device = &state->device;
+    const parian_scene_data *data = &renderer->scene->data;
+    for (uint32_t i = 0; i < renderer->instance_count; i++) {
+        for (uint32_t b = 0; b < data->body_count; b++) {
+            gl_pass_use(device, GL_PROGRAM_BODY);
+            set_view(renderer, view, &renderer->instances[i]);
+            draw_body(renderer, i, b);
+        }
+    }
+    gl_pass_use(device, GL_PROGRAM_SURROUNDING);
+    set_view(renderer, view, &stay);
+    for (uint32_t s = 0; s < data->surrounding_count; s++) {
+        gl_pass_vec3(device, "u_reflectance", 1, data->surroundings[s].reflectance);
+        gl_mesh_draw(device, &state->surrounding[s]);
+    }
+}
+
 void gl_shade_run(parian_renderer *renderer, const parian_draw_desc *desc)
 {
     gl_state *state = renderer->state;
     gl_device *device = &state->device;
     const parian_gl_api *gl = &device->gl;
-    const parian_scene_data *data = &renderer->scene->data;
     parian_view view = parian_view_make(&desc->camera);
     const GLenum buffer = GL_COLOR_ATTACHMENT0;
     gl->BindFramebuffer(GL_FRAMEBUFFER, state->picture.framebuffer);
@@ -165,17 +190,7 @@ void gl_shade_run(parian_renderer *renderer, const parian_draw_desc *desc)
                  (GLsizei)state->picture.samples.height);
     clear_samples(renderer);
     gl->Enable(GL_DEPTH_TEST);
-    for (uint32_t b = 0; b < data->body_count; b++) {
-        gl_pass_use(device, GL_PROGRAM_BODY);
-        set_view(renderer, &view);
-        draw_body(renderer, b);
-    }
-    gl_pass_use(device, GL_PROGRAM_SURROUNDING);
-    set_view(renderer, &view);
-    for (uint32_t s = 0; s < data->surrounding_count; s++) {
-        gl_pass_vec3(device, "u_reflectance", 1, data->surroundings[s].reflectance);
-        gl_mesh_draw(device, &state->surrounding[s]);
-    }
+    draw_meshes(renderer, &view);
     gl->Disable(GL_DEPTH_TEST);
     const gl_texture *target = &state->picture.picture;
     gl_pass_begin(device, GL_PROGRAM_RESOLVE, &target, 1);

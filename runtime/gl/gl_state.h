@@ -24,6 +24,8 @@ typedef struct gl_picture {
 typedef struct gl_state {
     gl_device device;
     gl_body *body;        /* [body_count] */
+    gl_lit *lit;          /* [lit_count * body_count] bodies of an instance one after the other */
+    uint32_t lit_count;   /* instances that there is room for */
     gl_mesh *surrounding; /* [surrounding_count] */
     gl_texture light, layer, image, shadow;
     GLuint shadow_framebuffer;
@@ -34,9 +36,10 @@ typedef struct gl_state {
  * shaders/lights.glsl reads. */
 parian_result gl_lights_upload(parian_renderer *renderer);
 parian_result gl_shadow_run(parian_renderer *renderer);
-void gl_pass_lights(const parian_renderer *renderer);
+/* scale: of the instance that is lit, 1 for surroundings. */
+void gl_pass_lights(const parian_renderer *renderer, float scale);
 
-/* gl_transfer.c: the passes from E to the shown atlases, each for all bodies. */
+/* gl_transfer.c: the passes from E to the shown atlases, each for all bodies of all instances. */
 void gl_irradiance_run(parian_renderer *renderer);
 void gl_restrict_run(parian_renderer *renderer);
 void gl_product_run(parian_renderer *renderer);

@@ -230,6 +230,26 @@ void parian_light_list_free(const parian_env *env, parian_light_list *list)
     }
 }
 
+static bool sample_equal(const parian_light_sample *a, const parian_light_sample *b)
+{
+    parian_light_sample c = *b;
+    c.layer_first = a->layer_first;
+    c.layer_count = a->layer_count;
+    return memcmp(a, &c, sizeof c) == 0;
+}
+
+bool parian_light_list_equal(const parian_light_list *a, const parian_light_list *b)
+{
+    bool equal = a->sample_count == b->sample_count && a->image_total == b->image_total &&
+                 a->has_environment == b->has_environment &&
+                 memcmp(a->environment_sh, b->environment_sh, sizeof a->environment_sh) == 0;
+    for (uint32_t i = 0; equal && i < a->sample_count; i++) {
+        equal = sample_equal(&a->sample[i], &b->sample[i]);
+    }
+    return equal &&
+           (!a->image_total || memcmp(a->image, b->image, a->image_total * sizeof *a->image) == 0);
+}
+
 static void put(float to[4], const float v[3], float w)
 {
     vec3_copy(to, v);

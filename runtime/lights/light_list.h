@@ -73,6 +73,9 @@ parian_result parian_light_list_build(const parian_env *env, const parian_light 
                                       size_t count, parian_light_list *list);
 void parian_light_list_free(const parian_env *env, parian_light_list *list);
 
+/* Whether two lists shine alike; their shadow layers do not matter. */
+bool parian_light_list_equal(const parian_light_list *a, const parian_light_list *b);
+
 /* A ball in world space. */
 typedef struct parian_ball {
     float center[3], radius;

@@ -135,5 +135,6 @@ parian_result parian_view_app_relight(parian_view_app *app)
 {
     parian_result result =
         parian_renderer_set_lights(app->renderer, app->lights.light, app->lights.count);
+    parian_renderer_invalidate(app->renderer); /* the same lights are timed again and again */
     return result == PARIAN_OK ? parian_renderer_relight(app->renderer) : result;
 }

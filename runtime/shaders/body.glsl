@@ -17,6 +17,7 @@ uniform float u_alpha;     // GGX roughness
 uniform float u_eta;
 uniform float u_exit_norm;
 uniform vec3 u_total;      // albedo of the opaque twin
+uniform mat4 u_model;      // of the instance
 uniform vec4 u_eye;        // position and 1, or direction and 0
 layout(location = 0) out vec4 o_radiance;
 
@@ -107,7 +108,7 @@ void main()
     vec3 smooth_n = normalize(v_normal), n = smooth_n;
     vec3 v = normalize(u_eye.xyz - v_position * u_eye.w);
     if (u_has_normal_map != 0) {
-        n = normalize(fetch_atlas(u_normal_map, v_uv));
+        n = normalize(mat3(u_model) * fetch_atlas(u_normal_map, v_uv));
     }
     float n_v = seen_cosine(n, v);
     o_radiance.a = 1.0;

@@ -270,25 +270,68 @@ static void test_pictures(void **state)
     (void)state;
 }
 
+typedef struct run_counts {
+    uint64_t relight, shade, tone; /* relight: each of the passes before shading ran as often */
+} run_counts;
+
+static run_counts count_runs(const parian_renderer *renderer)
+{
+    parian_pass_time times[PARIAN_PASS_MAX];
+    assert_int_equal(parian_renderer_get_times(renderer, times), PARIAN_PASS_COUNT);
+    for (int p = 1; p < PARIAN_PASS_SHADE; p++) {
+        assert_int_equal(times[p].runs, times[0].runs);
+    }
+    return (run_counts){times[0].runs, times[PARIAN_PASS_SHADE].runs, times[PARIAN_PASS_TONE].runs};
+}
+
+/* Draw, and expect so many runs since the renderer was made. */
+static void draw_and_expect(parian_renderer *renderer, const parian_draw_desc *draw,
+                            uint64_t relight, uint64_t shade, uint64_t tone)
+{
+    assert_int_equal(parian_renderer_draw(renderer, draw), PARIAN_OK);
+    run_counts found = count_runs(renderer);
+    assert_int_equal(found.relight, relight);
+    assert_int_equal(found.shade, shade);
+    assert_int_equal(found.tone, tone);
+}
+
+static void expect_only_what_changed(parian_renderer *renderer)
+{
+    const float eye[3] = {0.05f, 0.06f, 0.12f};
+    parian_draw_desc draw = {
+        .camera = lit_camera(eye, 32, 32), .width = 32, .height = 32, .framebuffer = UINT32_MAX};
+    parian_settings settings = {.roughness = 0.5f};
+    parian_instance instance = {{0}};
+    parian_light moved = open_light;
+    moved.direction[0] = 0.3f;
+    assert_int_equal(parian_renderer_set_lights(renderer, &open_light, 1), PARIAN_OK);
+    draw_and_expect(renderer, &draw, 1, 1, 1);
+    draw_and_expect(renderer, &draw, 1, 1, 2); /* nothing: shown again */
+    draw.exposure_ev = 1.0f;
+    draw_and_expect(renderer, &draw, 1, 1, 3);
+    draw.camera.view[14] *= 1.01f;
+    draw_and_expect(renderer, &draw, 1, 2, 4);
+    assert_int_equal(parian_renderer_set_settings(renderer, &settings), PARIAN_OK);
+    draw_and_expect(renderer, &draw, 1, 3, 5);
+    assert_int_equal(parian_renderer_set_settings(renderer, &settings), PARIAN_OK);
+    assert_int_equal(parian_renderer_set_lights(renderer, &open_light, 1), PARIAN_OK);
+    assert_int_equal(parian_renderer_set_instances(renderer, &instance, 1), PARIAN_OK);
+    draw_and_expect(renderer, &draw, 1, 3, 6);
+    assert_int_equal(parian_renderer_set_lights(renderer, &moved, 1), PARIAN_OK);
+    draw_and_expect(renderer, &draw, 2, 4, 7);
+    draw.width = 30;
+    draw_and_expect(renderer, &draw, 2, 5, 8);
+    parian_renderer_invalidate(renderer);
+    draw_and_expect(renderer, &draw, 3, 6, 9);
+    parian_renderer_destroy(renderer);
+}
+
 static void test_only_what_changed(void **state)
 {
     const parian_env *env = test_env(0);
     parian_scene *scene = lit_sphere(env, 0.02f, 4, 3);
-    parian_renderer *gl = make_gl(env, scene);
-    const float eye[3] = {0.05f, 0.06f, 0.12f};
-    parian_draw_desc draw = {
-        .camera = lit_camera(eye, 32, 32), .width = 32, .height = 32, .framebuffer = UINT32_MAX};
-    parian_pass_time times[PARIAN_PASS_MAX];
-    assert_int_equal(parian_renderer_set_lights(gl, &open_light, 1), PARIAN_OK);
-    for (int i = 0; i < 3; i++) {
-        assert_int_equal(parian_renderer_draw(gl, &draw), PARIAN_OK);
-    }
-    size_t count = parian_renderer_get_times(gl, times);
-    assert_int_equal(count, PARIAN_PASS_COUNT);
-    for (size_t p = 0; p < count; p++) {
-        assert_int_equal(times[p].runs, p >= PARIAN_PASS_SHADE ? 3 : 1);
-    }
-    parian_renderer_destroy(gl);
+    expect_only_what_changed(make_gl(env, scene));
+    expect_only_what_changed(lit_cpu(env, scene, 64));
     parian_scene_close(scene);
     (void)state;
 }

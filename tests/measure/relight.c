@@ -162,6 +162,7 @@ static parian_result relight_once(parian_relit *relit, const parian_light *light
 {
     double start = parian_seconds();
     parian_result r = parian_renderer_set_lights(relit->renderer, lights, count);
+    parian_renderer_invalidate(relit->renderer);
     if (r == PARIAN_OK) {
         r = parian_renderer_relight(relit->renderer);
     }

@@ -4,7 +4,8 @@
  *   parian_scene    an asset in memory; plain data, may serve many renderers and threads
  *   parian_renderer one scene in one GL context (or none: the C evaluation), with lights and settings
  *
- * Only what changed is recomputed: lights -> E, B and picture; camera -> picture alone.
+ * Only what changed is recomputed: lights or instances -> E, B and picture; camera or settings -> picture alone;
+ * exposure -> tone curve alone; what is set to what it was: nothing.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -81,6 +82,25 @@ uint64_t parian_renderer_memory(const parian_renderer *renderer); /* bytes of GL
  * PARIAN_E_UNSUPPORTED, lights with absurd numbers PARIAN_E_ARGUMENT; the old lights then stay. */
 parian_result parian_renderer_set_lights(parian_renderer *renderer, const parian_light *lights, size_t count);
 
+/* A copy of all bodies of the scene, somewhere else. The transform is column-major, as OpenGL takes it, and a
+ * rotation times one scale plus a translation; all zeros is the identity. A scaled body is one of a scaled medium
+ * (twice as large: mean free paths twice as long, sigma_a and sigma_s' half), so that B = T E holds as it was baked;
+ * lights and surroundings stay where they are and keep their units. */
+typedef struct parian_instance {
+    float transform[16];
+} parian_instance;
+
+enum { PARIAN_INSTANCE_MAX = 4096 };
+
+/* Replace the instances (copied); count 0, as after creation: one where the file has it. Every instance has its own
+ * E and B and casts shadows on all others; factors, kernels, atlas tables and meshes are shared. Equal instances
+ * change nothing; others relight all at the next relight.
+ * Errors: PARIAN_E_ARGUMENT (a transform that is not finite, mirrors, shears, scales unevenly by more than 1e-3, or
+ * scales outside 1e-6 to 1e6: its index and what is wrong), PARIAN_E_LIMIT, PARIAN_E_NOMEM; the old ones then stay.
+ * Threads: the context's thread. */
+parian_result parian_renderer_set_instances(parian_renderer *renderer, const parian_instance *instances,
+                                            size_t count);
+
 typedef enum parian_view_mode {
     PARIAN_VIEW_COMBINED = 0, /* translucent, with surface reflection */
     PARIAN_VIEW_LOCAL = 1,    /* scattered light of the local part alone */
@@ -103,13 +123,16 @@ typedef struct parian_settings { /* zero is default */
 } parian_settings;
 parian_result parian_renderer_set_settings(parian_renderer *renderer, const parian_settings *settings);
 
-/* Values that PARIAN_VIEW_VALUES paints on the bodies, as linear colours without exposure and tone curve:
- * [texel_count of the scene][3], bodies one after the other as in parian_texel_arrays; copied. Drawing that
- * view without values is PARIAN_E_ARGUMENT. Errors: PARIAN_E_NOMEM, PARIAN_E_DEVICE. */
+/* Values that PARIAN_VIEW_VALUES paints on the bodies (of every instance), as linear colours without exposure and
+ * tone curve: [texel_count of the scene][3], bodies one after the other as in parian_texel_arrays; copied. Drawing
+ * that view without values is PARIAN_E_ARGUMENT. Errors: PARIAN_E_NOMEM, PARIAN_E_DEVICE. */
 parian_result parian_renderer_set_values(parian_renderer *renderer, const float (*value)[3]);
 
-/* Bring E and B up to date with lights and settings; does nothing when nothing changed. */
+/* Bring E and B up to date with lights and instances; does nothing when nothing changed. */
 parian_result parian_renderer_relight(parian_renderer *renderer);
+
+/* Take everything for changed, so that the next relight and draw run every pass: for measuring. */
+void parian_renderer_invalidate(parian_renderer *renderer);
 
 /* Column-major matrices as OpenGL takes them. */
 typedef struct parian_camera {
@@ -133,9 +156,10 @@ parian_result parian_renderer_draw(parian_renderer *renderer, const parian_draw_
  * [height * width][4], and 8-bit sRGB after exposure and tone curve [height * width][4]. Either may be NULL. */
 parian_result parian_renderer_read_picture(parian_renderer *renderer, float (*radiance)[4], uint8_t (*srgb)[4]);
 
-/* Per-texel arrays of the whole scene, bodies one after the other, owned texels only, SI units. Each may be
- * NULL. local + global = radiosity (before the surface texture). Relights if needed. */
+/* Per-texel arrays of the whole scene, bodies one after the other, owned texels only, SI units, world space. Each
+ * may be NULL. local + global = radiosity (before the surface texture). Relights if needed. */
 typedef struct parian_texel_arrays {
+    uint32_t instance; /* of which instance; 0: the first */
     float (*position)[3];
     float (*normal)[3];
     float *area;
