@@ -8,6 +8,7 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <stdbool.h>
+#include <stddef.h>
 
 typedef struct test_egl {
     EGLDisplay display;
@@ -19,7 +20,12 @@ static inline bool test_egl_open(test_egl *egl, bool es)
 {
     const EGLint config_wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
                                     es ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT, EGL_NONE};
-    const EGLint context_es[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 0,
+    const EGLint context_es[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 3,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 0,
+                                 EGL_CONTEXT_OPENGL_DEBUG,
+                                 EGL_TRUE,
                                  EGL_NONE};
     const EGLint context_core[] = {EGL_CONTEXT_MAJOR_VERSION,
                                    3,
