@@ -12,10 +12,7 @@
 #include "core/memory.h"
 #include "vec3.h"
 
-enum { DRAW_SIDE_MAX = 16384, SHADOW_SIZE_DEFAULT = 2048, SHADOW_SIZE_MAX = 8192 };
-
-/* Memory that all shadow maps of a renderer may take: 16 maps of 2048 x 2048. */
-static const uint64_t shadow_memory_max = 256u << 20;
+enum { DRAW_SIDE_MAX = 16384, SHADOW_SIZE_MAX = 8192 };
 
 static const char *const pass_names[PARIAN_PASS_COUNT] = {
     "shadow", "irradiance", "restrict", "product", "filter", "gutter", "shade", "tone"};
@@ -136,7 +133,7 @@ parian_result parian_renderer_create(const parian_env *env, const parian_scene *
     made->scene = scene;
     made->desc = *desc;
     if (!made->desc.shadow_size) {
-        made->desc.shadow_size = SHADOW_SIZE_DEFAULT;
+        made->desc.shadow_size = PARIAN_SHADOW_SIZE_DEFAULT;
     }
     made->backend = desc->backend == PARIAN_BACKEND_CPU ? &parian_cpu_backend : &parian_gl_backend;
     result = prepare(made);
@@ -163,21 +160,6 @@ void parian_renderer_destroy(parian_renderer *renderer)
 const char *parian_renderer_name(const parian_renderer *renderer)
 {
     return renderer->name;
-}
-
-uint64_t parian_renderer_memory(const parian_renderer *renderer)
-{
-    return renderer->backend->memory(renderer);
-}
-
-parian_result parian_renderer_fit_shadows(parian_renderer *renderer, parian_light_list *list)
-{
-    const parian_bounds *bounds = &renderer->bounds;
-    bool surrounded = renderer->scene->data.surrounding_count > 0 &&
-                      bounds->everything.radius > 1.05f * bounds->bodies.radius;
-    return parian_shadow_fit(&renderer->env, list, renderer->desc.shadow_size, shadow_memory_max,
-                             &bounds->bodies, &bounds->everything, surrounded, bounds->lower,
-                             bounds->upper);
 }
 
 parian_result parian_renderer_set_lights(parian_renderer *renderer, const parian_light *lights,
@@ -256,8 +238,11 @@ parian_result parian_renderer_relight(parian_renderer *renderer)
     if (!renderer->lights_changed) {
         return PARIAN_OK;
     }
-    parian_result result = renderer->backend->relight(renderer);
-    renderer->picture_stale = true;
+    parian_result result = parian_renderer_check_uploaded(renderer);
+    if (result == PARIAN_OK) {
+        result = renderer->backend->relight(renderer);
+        renderer->picture_stale = true;
+    }
     if (result == PARIAN_OK) {
         renderer->lights_changed = false;
     }
@@ -282,6 +267,19 @@ static bool is_shading_due(const parian_renderer *renderer, const parian_draw_de
            memcmp(&renderer->picture_camera, &desc->camera, sizeof desc->camera) != 0;
 }
 
+/* A picture of a new size may have to take memory from the shadow maps. */
+static parian_result fit_picture(parian_renderer *renderer, const parian_draw_desc *desc)
+{
+    bool smaller = false;
+    if (renderer->picture_width == desc->width && renderer->picture_height == desc->height) {
+        return PARIAN_OK;
+    }
+    parian_result result = parian_renderer_fit_budget(renderer, &renderer->lights, desc->width,
+                                                      desc->height, &smaller);
+    renderer->lights_changed = renderer->lights_changed || smaller;
+    return result;
+}
+
 parian_result parian_renderer_draw(parian_renderer *renderer, const parian_draw_desc *desc)
 {
     if (!renderer || !desc) {
@@ -301,7 +299,10 @@ parian_result parian_renderer_draw(parian_renderer *renderer, const parian_draw_
     if (renderer->settings.view == PARIAN_VIEW_VALUES && !renderer->has_values) {
         return parian_fail(&renderer->env, PARIAN_E_ARGUMENT, "there are no values to paint");
     }
-    parian_result result = parian_renderer_relight(renderer);
+    parian_result result = fit_picture(renderer, desc);
+    if (result == PARIAN_OK) {
+        result = parian_renderer_relight(renderer);
+    }
     bool shade = result == PARIAN_OK && is_shading_due(renderer, desc);
     if (result == PARIAN_OK) {
         renderer->picture_width = 0;

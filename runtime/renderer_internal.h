@@ -12,6 +12,10 @@
 #include "scene_internal.h"
 #include "shade/body_optics.h"
 
+/* Memory that all shadow maps of a renderer may take: 16 maps of 2048 x 2048. */
+#define PARIAN_SHADOW_MEMORY_MAX ((uint64_t)256 << 20)
+enum { PARIAN_SHADOW_SIZE_DEFAULT = 2048 };
+
 typedef enum parian_pass {
     PARIAN_PASS_SHADOW,
     PARIAN_PASS_IRRADIANCE,
@@ -56,7 +60,15 @@ typedef struct parian_backend_table {
      * is B at vertices. */
     parian_result (*read_register)(parian_renderer *renderer, uint32_t body, uint32_t index,
                                    float (*value)[3]);
-    uint64_t (*memory)(const parian_renderer *renderer);
+    parian_memory (*memory)(const parian_renderer *renderer);
+    /* NULL where nothing is uploaded and no GL memory used: */
+    /* Upload about max_bytes; the scene's bytes that are left go to renderer->upload_left. */
+    parian_result (*upload)(parian_renderer *renderer, uint64_t max_bytes);
+    /* Add what a scene takes; and what these lights and a picture (of width 0: none) take. */
+    parian_result (*count_scene)(const parian_env *env, const parian_scene_data *scene,
+                                 uint32_t instance_count, parian_memory *memory);
+    void (*count_frame)(const parian_light_list *list, uint32_t width, uint32_t height,
+                        parian_memory *memory);
 } parian_backend_table;
 
 /* Where bodies and surroundings are: boxes, and balls around the boxes' middles; world space. */
@@ -88,7 +100,8 @@ struct parian_renderer {
     parian_pass_time pass[PARIAN_PASS_COUNT];
     uint32_t picture_width, picture_height; /* of the last draw, 0 before */
     parian_camera picture_camera;
-    bool picture_stale; /* the last picture shows other light or settings */
+    bool picture_stale;   /* the last picture shows other light or settings */
+    uint64_t upload_left; /* bytes of GL memory of the scene that are not uploaded yet */
 };
 
 /* Bracket a pass: counts its runs and, with timing on, its milliseconds. */
@@ -99,12 +112,22 @@ void parian_renderer_end_pass(parian_renderer *renderer, parian_pass pass);
 uint32_t parian_body_register_count(const parian_body *body);
 uint32_t parian_body_register_size(const parian_body *body, uint32_t index);
 
+/* renderer_memory.c: refuse a scene that the budget cannot hold, naming its parts. */
+parian_result parian_renderer_check_scene(const parian_renderer *renderer,
+                                          const parian_memory *scene);
+/* Place the shadow maps of a list around all instances, as large as desc and budget allow. */
+parian_result parian_renderer_fit_shadows(parian_renderer *renderer, parian_light_list *list);
+/* Make shadow maps smaller until they, the scene and a picture (width 0: none) stay within the
+ * budget; *smaller tells whether they changed. Errors: PARIAN_E_NOMEM; the list is then unchanged.
+ */
+parian_result parian_renderer_fit_budget(parian_renderer *renderer, parian_light_list *list,
+                                         uint32_t width, uint32_t height, bool *smaller);
+/* PARIAN_E_ARGUMENT while the scene is not uploaded. */
+parian_result parian_renderer_check_uploaded(const parian_renderer *renderer);
+
 /* Distance by which a shaded point is lifted along its normal before shadow look-ups, metres,
  * beyond what the shadow texel asks for; scale: of its instance, 1 for surroundings. */
 float parian_renderer_shadow_lift(const parian_renderer *renderer, float scale);
-
-/* Place the shadow maps of a list around all instances. */
-parian_result parian_renderer_fit_shadows(parian_renderer *renderer, parian_light_list *list);
 
 /* renderer_instances.c: one instance where the file has it. Errors: PARIAN_E_NOMEM. */
 parian_result parian_renderer_start_instances(parian_renderer *renderer);

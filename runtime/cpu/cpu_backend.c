@@ -99,7 +99,7 @@ static bool fill_static(const parian_env *env, const parian_body *body, const fl
     if (!PARIAN_NEW(env, *atlas, (size_t)body->atlas_size * body->atlas_size)) {
         return false;
     }
-    parian_atlas_fill(body, value, *atlas);
+    parian_atlas_fill(body, value, 0, (uint64_t)body->atlas_size * body->atlas_size, *atlas);
     return true;
 }
 
@@ -267,10 +267,12 @@ static void run_filter(parian_renderer *renderer, const pass_body *one)
 
 static void run_gutter(parian_renderer *renderer, const pass_body *one)
 {
+    const uint64_t area = (uint64_t)one->data->atlas_size * one->data->atlas_size;
     (void)renderer;
-    parian_atlas_fill(one->data, (const float(*)[3])one->lit->irradiance, one->atlas->irradiance);
-    parian_atlas_fill(one->data, (const float(*)[3])one->lit->local, one->atlas->local);
-    parian_atlas_fill(one->data, (const float(*)[3])one->lit->global, one->atlas->global);
+    parian_atlas_fill(one->data, (const float(*)[3])one->lit->irradiance, 0, area,
+                      one->atlas->irradiance);
+    parian_atlas_fill(one->data, (const float(*)[3])one->lit->local, 0, area, one->atlas->local);
+    parian_atlas_fill(one->data, (const float(*)[3])one->lit->global, 0, area, one->atlas->global);
 }
 
 static void run_all(parian_renderer *renderer, void (*run)(parian_renderer *, const pass_body *))
@@ -421,7 +423,7 @@ static parian_result cpu_set_values(parian_renderer *renderer, uint32_t body,
         return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for the values of %u texels",
                            data->texel_count);
     }
-    parian_atlas_fill(data, value, made->values);
+    parian_atlas_fill(data, value, 0, count, made->values);
     for (uint32_t i = 0; i < state->lit_count; i++) {
         state->atlas[i * renderer->scene->data.body_count + body].values = made->values;
     }
@@ -437,10 +439,10 @@ static parian_result cpu_read_register(parian_renderer *renderer, uint32_t body,
     return PARIAN_OK;
 }
 
-static uint64_t cpu_memory(const parian_renderer *renderer)
+static parian_memory cpu_memory(const parian_renderer *renderer)
 {
     (void)renderer;
-    return 0; /* no GL memory */
+    return (parian_memory){.total = 0}; /* no GL memory */
 }
 
 const parian_backend_table parian_cpu_backend = {

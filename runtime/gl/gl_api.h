@@ -23,6 +23,7 @@
     X(PFNGLBINDTEXTUREPROC, BindTexture)                                                           \
     X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                                                   \
     X(PFNGLBUFFERDATAPROC, BufferData)                                                             \
+    X(PFNGLBUFFERSUBDATAPROC, BufferSubData)                                                       \
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                                     \
     X(PFNGLCLEARBUFFERFVPROC, ClearBufferfv)                                                       \
     X(PFNGLCOLORMASKPROC, ColorMask)                                                               \
@@ -72,6 +73,7 @@
     X(PFNGLTEXIMAGE2DPROC, TexImage2D)                                                             \
     X(PFNGLTEXIMAGE3DPROC, TexImage3D)                                                             \
     X(PFNGLTEXPARAMETERIPROC, TexParameteri)                                                       \
+    X(PFNGLTEXSUBIMAGE2DPROC, TexSubImage2D)                                                       \
     X(PFNGLTEXSUBIMAGE3DPROC, TexSubImage3D)                                                       \
     X(PFNGLUNIFORM1FPROC, Uniform1f)                                                               \
     X(PFNGLUNIFORM1IPROC, Uniform1i)                                                               \

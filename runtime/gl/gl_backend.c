@@ -36,6 +36,8 @@ static void gl_destroy(parian_renderer *renderer)
     if (state) {
         destroy_objects(renderer, state);
         parian_free(&renderer->env, state->lit);
+        gl_upload_list_free(&state->upload);
+        parian_free(&renderer->env, state->source);
         parian_free(&renderer->env, state->body);
         parian_free(&renderer->env, state->surrounding);
         parian_free(&renderer->env, state);
@@ -43,23 +45,87 @@ static void gl_destroy(parian_renderer *renderer)
     }
 }
 
-static parian_result upload_scene(parian_renderer *renderer, gl_state *state)
+/* ---- the scene ---- */
+
+/* Describe everything that a scene needs. body and surrounding are zeroed. */
+static parian_result plan_scene(const parian_scene_data *data, gl_body_source *source,
+                                gl_body *body, gl_mesh *surrounding, gl_upload_list *list)
 {
-    const parian_scene_data *data = &renderer->scene->data;
-    parian_result result = PARIAN_OK;
-    if (!PARIAN_NEW0(&renderer->env, state->body, data->body_count) ||
-        !PARIAN_NEW0(&renderer->env, state->surrounding, data->surrounding_count)) {
-        return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for %u bodies",
-                           data->body_count);
+    for (uint32_t b = 0; b < data->body_count; b++) {
+        gl_body_plan(&data->bodies[b], &source[b], &body[b], list);
     }
-    for (uint32_t b = 0; result == PARIAN_OK && b < data->body_count; b++) {
-        result = gl_body_create(&state->device, &data->bodies[b], &state->body[b]);
+    for (uint32_t s = 0; s < data->surrounding_count; s++) {
+        gl_mesh_plan_surrounding(list, &data->surroundings[s], &surrounding[s]);
     }
-    for (uint32_t s = 0; result == PARIAN_OK && s < data->surrounding_count; s++) {
-        result =
-            gl_mesh_create(&state->device, NULL, &data->surroundings[s], &state->surrounding[s]);
+    return gl_upload_plan_end(list);
+}
+
+static parian_result allocate_scene(const parian_env *env, const parian_scene_data *data,
+                                    gl_state *state)
+{
+    if (!PARIAN_NEW0(env, state->body, data->body_count) ||
+        !PARIAN_NEW0(env, state->surrounding, data->surrounding_count) ||
+        !PARIAN_NEW0(env, state->source, data->body_count)) {
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u bodies", data->body_count);
     }
-    state->device.gl.GenFramebuffers(1, &state->shadow_framebuffer);
+    state->upload.env = env;
+    return plan_scene(data, state->source, state->body, state->surrounding, &state->upload);
+}
+
+static parian_result gl_count_scene(const parian_env *env, const parian_scene_data *data,
+                                    uint32_t instance_count, parian_memory *memory)
+{
+    gl_state state = {.shadow_framebuffer = 0};
+    parian_result result = allocate_scene(env, data, &state);
+    if (result == PARIAN_OK) {
+        gl_upload_count(&state.upload, memory);
+    }
+    for (uint32_t i = 0; i < data->body_count; i++) {
+        gl_lit_count(&data->bodies[i], instance_count, memory);
+    }
+    gl_upload_list_free(&state.upload);
+    parian_free(env, state.source);
+    parian_free(env, state.body);
+    parian_free(env, state.surrounding);
+    return result;
+}
+
+static void gl_count_frame(const parian_light_list *list, uint32_t width, uint32_t height,
+                           parian_memory *memory)
+{
+    gl_lights_count(list, memory);
+    if (width > 0) {
+        gl_picture_count(width, height, memory);
+    }
+}
+
+static parian_result gl_upload_scene(parian_renderer *renderer, uint64_t max_bytes)
+{
+    gl_state *state = renderer->state;
+    gl_device_enter(&state->device);
+    parian_result result = gl_upload_run(&state->device, &state->upload, max_bytes);
+    renderer->upload_left = gl_upload_left(&state->upload);
+    result = gl_device_leave(&state->device, result, "took in the scene");
+    if (result == PARIAN_OK && state->upload.next == state->upload.count) {
+        gl_upload_list_free(&state->upload);
+        parian_free(&renderer->env, state->source);
+        state->source = NULL;
+    }
+    return result;
+}
+
+static parian_result plan_upload(parian_renderer *renderer, gl_state *state)
+{
+    parian_memory planned = {.total = 0};
+    parian_result result = allocate_scene(&renderer->env, &renderer->scene->data, state);
+    if (result == PARIAN_OK) {
+        gl_upload_count(&state->upload, &planned);
+        renderer->upload_left = planned.total;
+        for (uint32_t b = 0; b < renderer->scene->data.body_count; b++) {
+            gl_lit_count(&renderer->scene->data.bodies[b], 1, &planned);
+        }
+        result = parian_renderer_check_scene(renderer, &planned);
+    }
     return result;
 }
 
@@ -70,15 +136,19 @@ static parian_result gl_create(parian_renderer *renderer)
         return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for a renderer");
     }
     renderer->state = state;
-    parian_result result = gl_device_init(&renderer->env, renderer->desc.get_proc_address,
-                                          renderer->desc.memory_budget, &state->device,
-                                          renderer->name, sizeof renderer->name);
-    if (result != PARIAN_OK) {
-        return result;
+    parian_result result = plan_upload(renderer, state);
+    if (result == PARIAN_OK) {
+        result = gl_device_init(&renderer->env, renderer->desc.get_proc_address,
+                                renderer->desc.memory_budget, &state->device, renderer->name,
+                                sizeof renderer->name);
     }
-    gl_device_enter(&state->device);
-    result = upload_scene(renderer, state);
-    return gl_device_leave(&state->device, result, "took in the scene");
+    if (result == PARIAN_OK) {
+        state->device.gl.GenFramebuffers(1, &state->shadow_framebuffer);
+    }
+    if (result == PARIAN_OK && !renderer->desc.deferred_upload) {
+        result = gl_upload_scene(renderer, UINT64_MAX);
+    }
+    return result;
 }
 
 /* ---- instances ---- */
@@ -274,7 +344,7 @@ static parian_result gl_read_register(parian_renderer *renderer, uint32_t body, 
     return read_picked(&state->device, &state->lit[body].registers[index], NULL, size, value);
 }
 
-static uint64_t gl_memory(const parian_renderer *renderer)
+static parian_memory gl_memory(const parian_renderer *renderer)
 {
     return ((const gl_state *)renderer->state)->device.memory;
 }
@@ -290,4 +360,7 @@ const parian_backend_table parian_gl_backend = {
     .set_values = gl_set_values,
     .read_register = gl_read_register,
     .memory = gl_memory,
+    .upload = gl_upload_scene,
+    .count_scene = gl_count_scene,
+    .count_frame = gl_count_frame,
 };

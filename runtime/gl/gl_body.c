@@ -1,4 +1,4 @@
-/* gl_body.c - uploads a body: atlases, restriction lists, kernels, operators.
+/* gl_body.c - plans the upload of a body: atlases, restriction lists, kernels, operators.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -8,122 +8,100 @@
 
 #include "core/memory.h"
 #include "method/atlas_fill.h"
-#include "method/restriction.h"
 
-#define TRY(call)                                                                                  \
-    do {                                                                                           \
-        parian_result try_result = (call);                                                         \
-        if (try_result != PARIAN_OK) {                                                             \
-            return try_result;                                                                     \
-        }                                                                                          \
-    } while (0)
+/* ---- atlases, element by element ---- */
 
-/* ---- atlases ---- */
-
-static void place_positions(const parian_body *body, float (*atlas)[4])
+static void copy_positions(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    for (uint32_t t = 0; t < body->texel_count; t++) {
-        float *to = atlas[body->texel_index[t]];
-        memcpy(to, body->texel_position[t], sizeof body->texel_position[0]);
-        to[3] = body->texel_area[t];
+    const parian_body *body = context;
+    float(*atlas)[4] = to;
+    memset(atlas, 0, count * sizeof *atlas);
+    for (uint32_t t = parian_find_first(body->texel_index, body->texel_count, first);
+         t < body->texel_count && body->texel_index[t] < first + count; t++) {
+        float *at = atlas[body->texel_index[t] - first];
+        memcpy(at, body->texel_position[t], sizeof body->texel_position[0]);
+        at[3] = body->texel_area[t];
     }
 }
 
-static void place_normals(const parian_body *body, float (*atlas)[4])
+static void copy_normals(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    for (uint32_t t = 0; t < body->texel_count; t++) {
-        memcpy(atlas[body->texel_index[t]], body->texel_normal[t], sizeof body->texel_normal[0]);
+    const parian_body *body = context;
+    float(*atlas)[4] = to;
+    memset(atlas, 0, count * sizeof *atlas);
+    for (uint32_t t = parian_find_first(body->texel_index, body->texel_count, first);
+         t < body->texel_count && body->texel_index[t] < first + count; t++) {
+        memcpy(atlas[body->texel_index[t] - first], body->texel_normal[t],
+               sizeof body->texel_normal[0]);
     }
 }
 
-static void place_barycentrics(const parian_body *body, float (*atlas)[4])
+static void copy_barycentrics(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    float(*pair)[2] = (float(*)[2])atlas; /* uses half of the room */
-    for (uint32_t t = 0; t < body->texel_count; t++) {
-        memcpy(pair[body->texel_index[t]], body->texel_barycentric[t], sizeof pair[0]);
+    const parian_body *body = context;
+    float(*atlas)[2] = to;
+    memset(atlas, 0, count * sizeof *atlas);
+    for (uint32_t t = parian_find_first(body->texel_index, body->texel_count, first);
+         t < body->texel_count && body->texel_index[t] < first + count; t++) {
+        memcpy(atlas[body->texel_index[t] - first], body->texel_barycentric[t], sizeof atlas[0]);
     }
 }
 
-static void place_info(const parian_body *body, float (*atlas)[4])
+/* Three vertices and the ordinal among interior or border texels; the ordinal of a gutter texel. */
+static void copy_info(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    uint32_t(*info)[4] = (uint32_t(*)[4])atlas;
-    uint32_t interior = 0;
-    memset(info, 0xFF, (size_t)body->atlas_size * body->atlas_size * sizeof info[0]);
-    for (uint32_t t = 0; t < body->texel_count; t++) {
-        uint32_t *to = info[body->texel_index[t]];
-        memcpy(to, body->triangle[body->texel_triangle[t]], sizeof body->triangle[0]);
+    const parian_body *body = context;
+    uint32_t(*info)[4] = to;
+    uint32_t t = parian_find_first(body->texel_index, body->texel_count, first);
+    uint32_t interior = t - parian_find_first(body->border_texel, body->border_count, t);
+    memset(info, 0xFF, count * sizeof *info);
+    for (; t < body->texel_count && body->texel_index[t] < first + count; t++) {
+        uint32_t *at = info[body->texel_index[t] - first];
+        memcpy(at, body->triangle[body->texel_triangle[t]], sizeof body->triangle[0]);
         bool border = body->texel_border[t] != PARIAN_NO_BORDER;
-        to[3] = border ? 0x80000000u | body->texel_border[t] : interior++;
+        at[3] = border ? 0x80000000u | body->texel_border[t] : interior++;
     }
-    for (uint32_t g = 0; g < body->gutter_count; g++) {
-        info[body->gutter_index[g]][1] = g;
+    for (uint32_t g = parian_find_first(body->gutter_index, body->gutter_count, first);
+         g < body->gutter_count && body->gutter_index[g] < first + count; g++) {
+        info[body->gutter_index[g] - first][1] = g;
     }
 }
 
-static void place_normal_map(const parian_body *body, float (*atlas)[4])
+static void copy_normal_map(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    parian_atlas_fill(body, (const float(*)[3])body->texel_normal_map, atlas);
+    const parian_body *body = context;
+    parian_atlas_fill(body, (const float(*)[3])body->texel_normal_map, first, count, to);
 }
 
-static void place_albedo(const parian_body *body, float (*atlas)[4])
+static void copy_albedo(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    parian_atlas_fill(body, (const float(*)[3])body->texel_albedo, atlas);
+    const parian_body *body = context;
+    parian_atlas_fill(body, (const float(*)[3])body->texel_albedo, first, count, to);
 }
 
-static parian_result upload_atlas(gl_device *device, const parian_body *body, gl_format format,
-                                  void (*place)(const parian_body *, float (*)[4]),
-                                  float (*scratch)[4], gl_texture *texture)
+static void plan_atlas(gl_upload_list *list, const parian_body *body, gl_format format,
+                       gl_array_source source, gl_texture *texture)
 {
-    memset(scratch, 0, (size_t)body->atlas_size * body->atlas_size * sizeof *scratch);
-    place(body, scratch);
-    return gl_texture_create(device, format, body->atlas_size, body->atlas_size, scratch, texture);
+    uint64_t area = (uint64_t)body->atlas_size * body->atlas_size;
+    *texture = gl_texture_describe(format, body->atlas_size, body->atlas_size);
+    gl_upload_texture(list, PARIAN_MEMORY_ATLAS, texture, area, source, body);
 }
 
-static parian_result upload_atlases(gl_device *device, const parian_body *body, float (*scratch)[4],
-                                    gl_body *made)
+static void plan_atlases(gl_upload_list *list, const parian_body *body, gl_body *made)
 {
-    TRY(upload_atlas(device, body, GL_FORMAT_RGBA32F, place_positions, scratch, &made->position));
-    TRY(upload_atlas(device, body, GL_FORMAT_RGBA32F, place_normals, scratch, &made->normal));
-    TRY(upload_atlas(device, body, GL_FORMAT_RG32F, place_barycentrics, scratch,
-                     &made->barycentric));
-    TRY(upload_atlas(device, body, GL_FORMAT_RGBA32UI, place_info, scratch, &made->info));
+    plan_atlas(list, body, GL_FORMAT_RGBA32F, copy_positions, &made->position);
+    plan_atlas(list, body, GL_FORMAT_RGBA32F, copy_normals, &made->normal);
+    plan_atlas(list, body, GL_FORMAT_RG32F, copy_barycentrics, &made->barycentric);
+    plan_atlas(list, body, GL_FORMAT_RGBA32UI, copy_info, &made->info);
     if (body->texel_normal_map) {
-        TRY(upload_atlas(device, body, GL_FORMAT_RGBA32F, place_normal_map, scratch,
-                         &made->normal_map));
+        plan_atlas(list, body, GL_FORMAT_RGBA32F, copy_normal_map, &made->normal_map);
     }
     if (body->texel_albedo) {
-        TRY(upload_atlas(device, body, GL_FORMAT_RGBA32F, place_albedo, scratch, &made->albedo));
-    }
-    return PARIAN_OK;
-}
-
-static parian_result create_atlases(gl_device *device, const parian_body *body, gl_body *made)
-{
-    float(*scratch)[4];
-    if (!PARIAN_NEW(device->env, scratch, (size_t)body->atlas_size * body->atlas_size)) {
-        return parian_fail(device->env, PARIAN_E_NOMEM,
-                           "no memory for an atlas of %u texels a side", body->atlas_size);
-    }
-    parian_result result = upload_atlases(device, body, scratch, made);
-    parian_free(device->env, scratch);
-    return result;
-}
-
-/* ---- lists ---- */
-
-/* Texel ordinals become places in the atlas. */
-typedef struct ordinal_list {
-    const parian_body *body;
-    const uint32_t *ordinal;
-} ordinal_list;
-
-static void copy_places(const void *context, uint64_t first, uint64_t count, void *to)
-{
-    const ordinal_list *list = context;
-    for (uint64_t i = 0; i < count; i++) {
-        ((uint32_t *)to)[i] = list->body->texel_index[list->ordinal[first + i]];
+        plan_atlas(list, body, GL_FORMAT_RGBA32F, copy_albedo, &made->albedo);
     }
 }
+
+/* ---- gutter ---- */
 
 static void copy_gutter_sources(const void *context, uint64_t first, uint64_t count, void *to)
 {
@@ -137,145 +115,198 @@ static void copy_gutter_sources(const void *context, uint64_t first, uint64_t co
     }
 }
 
-typedef struct feed_list {
-    const parian_body *body;
-    const parian_feed *feed;
-} feed_list;
+static void plan_gutter(gl_upload_list *list, const parian_body *body, gl_body *made)
+{
+    made->gutter_source = gl_array_describe(GL_FORMAT_RGBA32UI, body->gutter_count);
+    made->gutter_weight = gl_array_describe(GL_FORMAT_RGBA32F, body->gutter_count);
+    gl_upload_texture(list, PARIAN_MEMORY_ATLAS, &made->gutter_source, body->gutter_count,
+                      copy_gutter_sources, body);
+    gl_upload_texture(list, PARIAN_MEMORY_ATLAS, &made->gutter_weight, body->gutter_count, NULL,
+                      body->gutter_weight);
+}
+
+/* ---- restriction ---- */
+
+static parian_result make_restriction(const parian_env *env, void *context)
+{
+    gl_body_source *source = context;
+    return parian_restriction_build(env, source->body, &source->restriction);
+}
+
+static void drop_restriction(const parian_env *env, void *context)
+{
+    gl_body_source *source = context;
+    parian_restriction_free(env, &source->restriction);
+}
+
+static void copy_feed_offsets(const void *context, uint64_t first, uint64_t count, void *to)
+{
+    const gl_body_source *source = context;
+    memcpy(to, source->restriction.offset + first, count * sizeof *source->restriction.offset);
+}
 
 static void copy_feeds(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    const feed_list *list = context;
+    const gl_body_source *source = context;
     uint32_t(*pair)[2] = to;
     for (uint64_t i = 0; i < count; i++) {
-        const parian_feed *feed = &list->feed[first + i];
-        pair[i][0] = list->body->texel_index[feed->texel];
+        const parian_feed *feed = &source->restriction.feed[first + i];
+        pair[i][0] = source->body->texel_index[feed->texel];
         memcpy(&pair[i][1], &feed->flux, sizeof pair[i][1]);
     }
 }
 
-static parian_result upload_restriction(gl_device *device, const parian_body *body,
-                                        const parian_restriction *restriction, gl_body *made)
+static void copy_feed_weights(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    feed_list feeds = {body, restriction->feed};
-    TRY(gl_array_upload(device, GL_FORMAT_R32UI, (uint64_t)restriction->vertex_count + 1,
-                        restriction->offset, &made->feed_offset));
-    TRY(gl_array_create(device, GL_FORMAT_RG32UI, restriction->total, copy_feeds, &feeds,
-                        &made->feed));
-    if (restriction->weight) {
-        TRY(gl_array_upload(device, GL_FORMAT_RGB16F, restriction->total, restriction->weight,
-                            &made->feed_weight));
-    }
-    return PARIAN_OK;
+    const gl_body_source *source = context;
+    memcpy(to, source->restriction.weight + first, count * sizeof *source->restriction.weight);
 }
 
-static parian_result create_restriction(gl_device *device, const parian_body *body, gl_body *made)
+static void plan_restriction(gl_upload_list *list, gl_body_source *source, gl_body *made)
 {
-    parian_restriction restriction = {0};
-    TRY(parian_restriction_build(device->env, body, &restriction));
-    parian_result result = upload_restriction(device, body, &restriction, made);
-    parian_restriction_free(device->env, &restriction);
-    return result;
+    const parian_memory_part part = PARIAN_MEMORY_FACTORS;
+    const gl_preparation restriction = {make_restriction, drop_restriction, source};
+    uint64_t offsets = (uint64_t)source->body->vertex_count + 1;
+    uint64_t feeds = 3 * (uint64_t)source->body->texel_count;
+    made->feed_offset = gl_array_describe(GL_FORMAT_R32UI, offsets);
+    made->feed = gl_array_describe(GL_FORMAT_RG32UI, feeds);
+    gl_upload_prepare_begin(list, restriction);
+    gl_upload_texture(list, part, &made->feed_offset, offsets, copy_feed_offsets, source);
+    gl_upload_texture(list, part, &made->feed, feeds, copy_feeds, source);
+    if (source->body->blend_weight) {
+        made->feed_weight = gl_array_describe(GL_FORMAT_RGB16F, feeds);
+        gl_upload_texture(list, part, &made->feed_weight, feeds, copy_feed_weights, source);
+    }
+    gl_upload_prepare_end(list);
 }
 
 /* ---- kernels ---- */
 
-typedef struct kernel_planes {
-    const parian_half (*tap)[3]; /* [interior][taps] */
-    uint64_t interior, taps;
-} kernel_planes;
+static parian_result make_kernels(const parian_env *env, void *context)
+{
+    gl_body_source *source = context;
+    parian_result result = parian_kernels_build(env, source->body, &source->kernels);
+    if (result == PARIAN_OK) {
+        memcpy(source->made->channel_scale, source->kernels.channel_scale,
+               sizeof source->kernels.channel_scale);
+    }
+    return result;
+}
+
+static void drop_kernels(const parian_env *env, void *context)
+{
+    gl_body_source *source = context;
+    parian_kernels_free(env, &source->kernels);
+}
 
 /* From one kernel after the other to one tap after the other, so that neighbours read neighbours.
  */
 static void copy_planes(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    const kernel_planes *planes = context;
+    const gl_body_source *source = context;
+    const parian_half(*kernel)[3] = (const parian_half(*)[3])source->kernels.interior;
     parian_half(*out)[3] = to;
-    uint64_t tap = first / planes->interior, texel = first % planes->interior;
+    uint64_t interior = source->made->interior_count;
+    uint64_t taps = (uint64_t)source->body->kernel_width * source->body->kernel_width;
+    uint64_t tap = first / interior, texel = first % interior;
     for (uint64_t i = 0; i < count; i++) {
-        memcpy(out[i], planes->tap[texel * planes->taps + tap], sizeof out[i]);
-        if (++texel == planes->interior) {
+        memcpy(out[i], kernel[texel * taps + tap], sizeof out[i]);
+        if (++texel == interior) {
             texel = 0;
             tap++;
         }
     }
 }
 
-static parian_result upload_kernels(gl_device *device, const parian_body *body,
-                                    const parian_kernels *kernels, gl_body *made)
+static void copy_border_kernels(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    ordinal_list neighbours = {body, body->border_neighbour};
-    uint64_t taps = (uint64_t)body->kernel_width * body->kernel_width;
-    kernel_planes planes = {(const parian_half(*)[3])kernels->interior, made->interior_count, taps};
-    uint64_t listed = body->border_count ? body->border_offset[body->border_count] : 0;
-    memcpy(made->channel_scale, kernels->channel_scale, sizeof made->channel_scale);
-    TRY(gl_array_create(device, GL_FORMAT_RGB16F, made->interior_count * taps, copy_planes, &planes,
-                        &made->kernel));
-    if (body->border_count) {
-        TRY(gl_array_upload(device, GL_FORMAT_R32UI, (uint64_t)body->border_count + 1,
-                            body->border_offset, &made->border));
-        TRY(gl_array_create(device, GL_FORMAT_R32UI, listed, copy_places, &neighbours,
-                            &made->neighbour));
-        TRY(gl_array_upload(device, GL_FORMAT_RGB16F, listed, kernels->border,
-                            &made->border_kernel));
-    }
-    return PARIAN_OK;
+    const gl_body_source *source = context;
+    memcpy(to, source->kernels.border + first, count * sizeof *source->kernels.border);
 }
 
-static parian_result create_kernels(gl_device *device, const parian_body *body, gl_body *made)
+/* Texel ordinals become places in the atlas. */
+static void copy_neighbours(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    parian_kernels kernels = {0};
+    const parian_body *body = context;
+    for (uint64_t i = 0; i < count; i++) {
+        ((uint32_t *)to)[i] = body->texel_index[body->border_neighbour[first + i]];
+    }
+}
+
+static void plan_border(gl_upload_list *list, gl_body_source *source, gl_body *made)
+{
+    const parian_memory_part part = PARIAN_MEMORY_KERNELS;
+    const parian_body *body = source->body;
+    uint64_t offsets = (uint64_t)body->border_count + 1;
+    uint64_t listed = body->border_offset[body->border_count];
+    made->border = gl_array_describe(GL_FORMAT_R32UI, offsets);
+    made->neighbour = gl_array_describe(GL_FORMAT_R32UI, listed);
+    made->border_kernel = gl_array_describe(GL_FORMAT_RGB16F, listed);
+    gl_upload_texture(list, part, &made->border, offsets, NULL, body->border_offset);
+    gl_upload_texture(list, part, &made->neighbour, listed, copy_neighbours, body);
+    gl_upload_texture(list, part, &made->border_kernel, listed, copy_border_kernels, source);
+}
+
+static void plan_kernels(gl_upload_list *list, gl_body_source *source, gl_body *made)
+{
+    const parian_body *body = source->body;
+    const gl_preparation kernels = {make_kernels, drop_kernels, source};
+    uint64_t taps = (uint64_t)body->kernel_width * body->kernel_width;
     made->interior_count = body->texel_count - body->border_count;
     if (body->local_form == PARIAN_LOCAL_NONE) {
-        return PARIAN_OK;
+        return;
     }
-    TRY(parian_kernels_build(device->env, body, &kernels));
-    parian_result result = upload_kernels(device, body, &kernels, made);
-    parian_kernels_free(device->env, &kernels);
-    return result;
+    made->kernel = gl_array_describe(GL_FORMAT_RGB16F, made->interior_count * taps);
+    gl_upload_prepare_begin(list, kernels);
+    gl_upload_texture(list, PARIAN_MEMORY_KERNELS, &made->kernel, made->interior_count * taps,
+                      copy_planes, source);
+    if (body->border_count) {
+        plan_border(list, source, made);
+    }
+    gl_upload_prepare_end(list);
 }
 
 /* ---- all ---- */
 
-static parian_result create_registers(gl_device *device, const parian_body *body, gl_body *made)
+static void plan_registers(gl_upload_list *list, const parian_body *body, gl_body *made)
 {
     made->register_count = parian_body_register_count(body);
     for (uint32_t r = 0; r < made->register_count; r++) {
-        TRY(gl_vector_create(device, parian_body_register_size(body, r), &made->spare[r]));
+        made->spare[r] = gl_vector_describe(parian_body_register_size(body, r));
+        gl_upload_target(list, PARIAN_MEMORY_FACTORS, &made->spare[r]);
     }
-    for (uint32_t o = 0; o < body->operator_count; o++) {
-        TRY(gl_operator_create(device, &body->operators[o], &made->operators[o]));
-    }
-    return PARIAN_OK;
 }
 
-parian_result gl_body_create(gl_device *device, const parian_body *body, gl_body *made)
+void gl_body_plan(const parian_body *body, gl_body_source *source, gl_body *made,
+                  gl_upload_list *list)
 {
-    TRY(gl_mesh_create(device, body, NULL, &made->mesh));
-    TRY(create_atlases(device, body, made));
-    TRY(create_restriction(device, body, made));
-    TRY(create_kernels(device, body, made));
-    TRY(create_registers(device, body, made));
-    if (body->gutter_count) {
-        TRY(gl_array_create(device, GL_FORMAT_RGBA32UI, body->gutter_count, copy_gutter_sources,
-                            body, &made->gutter_source));
-        TRY(gl_array_upload(device, GL_FORMAT_RGBA32F, body->gutter_count, body->gutter_weight,
-                            &made->gutter_weight));
+    *source = (gl_body_source){.body = body, .made = made};
+    gl_mesh_plan_body(list, body, &made->mesh);
+    plan_atlases(list, body, made);
+    plan_restriction(list, source, made);
+    plan_kernels(list, source, made);
+    plan_registers(list, body, made);
+    for (uint32_t o = 0; o < body->operator_count; o++) {
+        gl_operator_plan(&body->operators[o], &source->operators[o], &made->operators[o], list);
     }
-    return PARIAN_OK;
+    if (body->gutter_count) {
+        plan_gutter(list, body, made);
+    }
 }
 
 parian_result gl_body_set_values(gl_device *device, const parian_body *body,
                                  const float (*value)[3], gl_body *made)
 {
+    uint64_t area = (uint64_t)body->atlas_size * body->atlas_size;
+    gl_texture wanted = gl_texture_describe(GL_FORMAT_RGBA32F, body->atlas_size, body->atlas_size);
     float(*scratch)[4];
-    if (!PARIAN_NEW(device->env, scratch, (size_t)body->atlas_size * body->atlas_size)) {
+    if (!PARIAN_NEW(device->env, scratch, area)) {
         return parian_fail(device->env, PARIAN_E_NOMEM, "no memory for the values of %u texels",
                            body->texel_count);
     }
-    parian_atlas_fill(body, value, scratch);
-    gl_texture_destroy(device, &made->values);
-    parian_result result = gl_texture_create(device, GL_FORMAT_RGBA32F, body->atlas_size,
-                                             body->atlas_size, scratch, &made->values);
+    parian_atlas_fill(body, value, 0, area, scratch);
+    device->part = PARIAN_MEMORY_ATLAS;
+    parian_result result = gl_texture_update(device, &wanted, area, scratch, &made->values);
     parian_free(device->env, scratch);
     return result;
 }

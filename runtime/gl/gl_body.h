@@ -7,17 +7,11 @@
 
 #include "core/body.h"
 #include "core/kernel.h"
-#include "gl/gl_device.h"
+#include "gl/gl_upload.h"
+#include "method/restriction.h"
 #include "renderer_internal.h"
 
 enum { GL_REGISTER_MAX = 2 * PARIAN_MAX_OPERATORS };
-
-/* A mesh with its corners unrolled: position, normal, uv, chart colour. */
-typedef struct gl_mesh {
-    GLuint vertex_array, buffer;
-    uint32_t corner_count;
-    uint64_t size;
-} gl_mesh;
 
 typedef struct gl_operator {
     uint32_t segment_count;
@@ -50,21 +44,49 @@ typedef struct gl_lit {
     gl_texture registers[GL_REGISTER_MAX];
 } gl_lit;
 
-parian_result gl_body_create(gl_device *device, const parian_body *body, gl_body *made);
+/* An operator's rows cut into segments, as long as they are uploaded. */
+typedef struct gl_operator_source {
+    const parian_operator *op;
+    uint32_t segment_count;
+    struct gl_segment *segment; /* [segment_count] */
+    uint32_t *row_segment;      /* [row_count + 1] */
+} gl_operator_source;
+
+/* What the jobs of a body read; lives until they are done. */
+typedef struct gl_body_source {
+    const parian_body *body;
+    gl_body *made;
+    parian_kernels kernels;
+    parian_restriction restriction;
+    gl_operator_source operators[PARIAN_MAX_OPERATORS];
+} gl_body_source;
+
+/* Describe all textures of a body and add the jobs that fill them. Needs no GL. */
+void gl_body_plan(const parian_body *body, gl_body_source *source, gl_body *made,
+                  gl_upload_list *list);
 /* Values to paint on the body, [texel_count]. */
 parian_result gl_body_set_values(gl_device *device, const parian_body *body,
                                  const float (*value)[3], gl_body *made);
 void gl_body_destroy(gl_device *device, gl_body *made);
 
+/* The textures of an instance, empty; and their bytes. */
 parian_result gl_lit_create(gl_device *device, const parian_body *body, gl_lit *made);
+void gl_lit_count(const parian_body *body, uint32_t instance_count, parian_memory *memory);
 void gl_lit_destroy(gl_device *device, gl_lit *made);
 
-parian_result gl_mesh_create(gl_device *device, const parian_body *body,
-                             const parian_surrounding *surrounding, gl_mesh *mesh);
+void gl_mesh_plan_body(gl_upload_list *list, const parian_body *body, gl_mesh *mesh);
+void gl_mesh_plan_surrounding(gl_upload_list *list, const parian_surrounding *surrounding,
+                              gl_mesh *mesh);
+uint32_t gl_mesh_corner_size(void); /* bytes */
+/* Storage of a planned mesh; then its corners [first, first + count). */
+parian_result gl_mesh_allocate(gl_device *device, gl_mesh *mesh);
+void gl_mesh_write(gl_device *device, const gl_mesh *mesh, uint64_t first, uint64_t count,
+                   const void *corners);
 void gl_mesh_destroy(gl_device *device, gl_mesh *mesh);
 void gl_mesh_draw(gl_device *device, const gl_mesh *mesh);
 
-parian_result gl_operator_create(gl_device *device, const parian_operator *op, gl_operator *made);
+void gl_operator_plan(const parian_operator *op, gl_operator_source *source, gl_operator *made,
+                      gl_upload_list *list);
 void gl_operator_destroy(gl_device *device, gl_operator *made);
 
 #endif

@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "gl/gl_api.h"
+#include "parian/runtime.h"
 
 typedef enum gl_format {
     GL_FORMAT_RGBA32F,
@@ -31,7 +32,8 @@ typedef struct gl_texture {
     GLenum target;
     gl_format format;
     uint32_t width, height, layers;
-    uint64_t size; /* bytes, as counted */
+    uint64_t size;           /* bytes, as counted */
+    parian_memory_part part; /* for which they count */
 } gl_texture;
 
 typedef enum gl_program_id {
@@ -50,7 +52,13 @@ typedef enum gl_program_id {
     GL_PROGRAM_COUNT
 } gl_program_id;
 
-enum { GL_VECTOR_WIDTH = 2048, GL_ARRAY_WIDTH = 2048, GL_ARRAY_HEIGHT = 512, GL_UNIT_MAX = 16 };
+enum {
+    GL_VECTOR_WIDTH = 2048,
+    GL_ARRAY_WIDTH = 2048,
+    GL_ARRAY_HEIGHT = 512,
+    GL_ARRAY_LAYERS_MAX = 4096, /* shaders count elements with 32 bits */
+    GL_UNIT_MAX = 16
+};
 
 /* What of the application's state our passes change, and put back. */
 typedef struct gl_kept_state {
@@ -66,7 +74,9 @@ typedef struct gl_device {
     parian_gl_api gl;
     bool es;
     GLint texture_max, layers_max;
-    uint64_t memory, memory_budget;
+    parian_memory memory; /* in use */
+    uint64_t memory_budget;
+    parian_memory_part part; /* to which new textures and buffers count */
     GLuint framebuffer, empty_vertex_array;
     GLuint program[GL_PROGRAM_COUNT];
     gl_program_id current;
@@ -87,25 +97,39 @@ void gl_device_destroy(gl_device *device);
 void gl_device_enter(gl_device *device);
 parian_result gl_device_leave(gl_device *device, parian_result result, const char *what);
 
-/* Textures. data may be NULL (2-D: contents undefined). Errors: PARIAN_E_NOMEM (budget or GL),
- * PARIAN_E_UNSUPPORTED (too large for this device). A zeroed texture may be destroyed. */
+/* What textures would be, without making them: a 2-D one, a vector of count elements, a long array,
+ * layers of depth maps. */
+gl_texture gl_texture_describe(gl_format format, uint32_t width, uint32_t height);
+gl_texture gl_vector_describe(uint64_t count);
+gl_texture gl_array_describe(gl_format format, uint64_t count);
+gl_texture gl_depth_describe(uint32_t size, uint32_t layers);
+uint32_t gl_format_size(gl_format format); /* bytes of an element */
+
+/* Storage of a described texture, contents undefined. Errors: PARIAN_E_NOMEM (budget or GL),
+ * PARIAN_E_UNSUPPORTED (too large for this device), PARIAN_E_DEVICE; it is then still only
+ * described. */
+parian_result gl_texture_allocate(gl_device *device, gl_texture *texture);
+/* Write elements [first, first + count), row by row; first is the start of a row. */
+void gl_texture_write(gl_device *device, const gl_texture *texture, uint64_t first, uint64_t count,
+                      const void *data);
+/* Storage and contents at once; data may be NULL. After an error *texture is as it was. A zeroed
+ * texture may be destroyed. */
 parian_result gl_texture_create(gl_device *device, gl_format format, uint32_t width,
                                 uint32_t height, const void *data, gl_texture *texture);
-/* A vector of count elements. */
-parian_result gl_vector_create(gl_device *device, uint64_t count, gl_texture *texture);
-/* Write elements [first, first + count) of a long array to `to`. */
-typedef void (*gl_array_source)(const void *context, uint64_t first, uint64_t count, void *to);
-parian_result gl_array_create(gl_device *device, gl_format format, uint64_t count,
-                              gl_array_source source, const void *context, gl_texture *texture);
-/* The same from memory. */
 parian_result gl_array_upload(gl_device *device, gl_format format, uint64_t count, const void *data,
                               gl_texture *texture);
-/* Layers of a depth map. */
-parian_result gl_depth_create(gl_device *device, uint32_t size, uint32_t layers,
-                              gl_texture *texture);
+/* New contents; storage is made anew only where the description changed. After an error the texture
+ * is absent or holds what it held. */
+parian_result gl_texture_update(gl_device *device, const gl_texture *wanted, uint64_t count,
+                                const void *data, gl_texture *texture);
 void gl_texture_destroy(gl_device *device, gl_texture *texture);
-/* Count memory of buffers; PARIAN_E_NOMEM above the budget. */
+
+/* Count memory of buffers for the current part; PARIAN_E_NOMEM above the budget. */
 parian_result gl_memory_add(gl_device *device, uint64_t size);
+void gl_memory_remove(gl_device *device, parian_memory_part part, uint64_t size);
+/* GL answers a failed allocation with an error: make it a result, so that it reaches no later call.
+ */
+parian_result gl_error_check(gl_device *device, const char *what, uint64_t size);
 
 /* A pass: begin with targets (count may be 0: framebuffer is the caller's), set inputs, draw. */
 void gl_pass_begin(gl_device *device, gl_program_id program, const gl_texture *const *target,

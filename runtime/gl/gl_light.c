@@ -5,22 +5,46 @@
 #include "core/memory.h"
 #include "gl/gl_state.h"
 
-static parian_result upload_tables(gl_device *device, const parian_light_list *list,
-                                   gl_state *state)
+/* What the light textures of a list are. */
+typedef struct light_textures {
+    gl_texture light, layer, image, shadow;
+} light_textures;
+
+static light_textures describe(const parian_light_list *list)
 {
+    const bool shadows = list->layer_count > 0;
+    return (light_textures){
+        gl_texture_describe(GL_FORMAT_RGBA32F, PARIAN_LIGHT_ROW, list->sample_count + 1),
+        gl_texture_describe(GL_FORMAT_RGBA32F, PARIAN_LAYER_ROW, list->layer_count + 1),
+        gl_array_describe(GL_FORMAT_RGBA32F, list->image_total),
+        gl_depth_describe(shadows ? list->shadow_size : 1, shadows ? list->layer_count : 1)};
+}
+
+void gl_lights_count(const parian_light_list *list, parian_memory *memory)
+{
+    light_textures made = describe(list);
+    uint64_t tables = made.light.size + made.layer.size + made.image.size;
+    memory->bytes[PARIAN_MEMORY_LIGHTS] += tables;
+    memory->bytes[PARIAN_MEMORY_SHADOWS] += made.shadow.size;
+    memory->total += tables + made.shadow.size;
+}
+
+static parian_result upload_tables(gl_device *device, const parian_light_list *list,
+                                   const light_textures *wanted, gl_state *state)
+{
+    size_t sample_count = ((size_t)list->sample_count + 1) * PARIAN_LIGHT_ROW;
+    size_t layer_count = ((size_t)list->layer_count + 1) * PARIAN_LAYER_ROW;
     float(*samples)[4] = NULL, (*layers)[4] = NULL;
     parian_result result = PARIAN_E_NOMEM;
-    if (!PARIAN_NEW0(device->env, samples, ((size_t)list->sample_count + 1) * PARIAN_LIGHT_ROW) ||
-        !PARIAN_NEW0(device->env, layers, ((size_t)list->layer_count + 1) * PARIAN_LAYER_ROW)) {
+    if (!PARIAN_NEW0(device->env, samples, sample_count) ||
+        !PARIAN_NEW0(device->env, layers, layer_count)) {
         parian_fail(device->env, result, "no memory for %u light samples", list->sample_count);
         goto done;
     }
     parian_light_list_tables(list, samples, layers);
-    result = gl_texture_create(device, GL_FORMAT_RGBA32F, PARIAN_LIGHT_ROW, list->sample_count + 1,
-                               samples, &state->light);
+    result = gl_texture_update(device, &wanted->light, sample_count, samples, &state->light);
     if (result == PARIAN_OK) {
-        result = gl_texture_create(device, GL_FORMAT_RGBA32F, PARIAN_LAYER_ROW,
-                                   list->layer_count + 1, layers, &state->layer);
+        result = gl_texture_update(device, &wanted->layer, layer_count, layers, &state->layer);
     }
 done:
     parian_free(device->env, samples);
@@ -28,24 +52,22 @@ done:
     return result;
 }
 
+/* Textures of the same size are written anew, others made anew: old ones go first. */
 parian_result gl_lights_upload(parian_renderer *renderer)
 {
     gl_state *state = renderer->state;
     gl_device *device = &state->device;
     const parian_light_list *list = &renderer->lights;
-    gl_texture_destroy(device, &state->light);
-    gl_texture_destroy(device, &state->layer);
-    gl_texture_destroy(device, &state->image);
-    parian_result result = upload_tables(device, list, state);
+    const light_textures wanted = describe(list);
+    device->part = PARIAN_MEMORY_SHADOWS;
+    parian_result result = gl_texture_update(device, &wanted.shadow, 0, NULL, &state->shadow);
+    device->part = PARIAN_MEMORY_LIGHTS;
     if (result == PARIAN_OK) {
-        result = gl_array_upload(device, GL_FORMAT_RGBA32F, list->image_total, list->image,
-                                 &state->image);
+        result = upload_tables(device, list, &wanted, state);
     }
-    uint32_t size = list->layer_count ? list->shadow_size : 1,
-             layers = list->layer_count ? list->layer_count : 1;
-    if (result == PARIAN_OK && (state->shadow.width != size || state->shadow.layers != layers)) {
-        gl_texture_destroy(device, &state->shadow);
-        result = gl_depth_create(device, size, layers, &state->shadow);
+    if (result == PARIAN_OK) {
+        result =
+            gl_texture_update(device, &wanted.image, list->image_total, list->image, &state->image);
     }
     return result;
 }

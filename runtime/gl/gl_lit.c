@@ -9,14 +9,27 @@ parian_result gl_lit_create(gl_device *device, const parian_body *body, gl_lit *
     gl_texture *atlases[6] = {&made->irradiance,       &made->local,       &made->global,
                               &made->shown_irradiance, &made->shown_local, &made->shown_global};
     parian_result result = PARIAN_OK;
+    device->part = PARIAN_MEMORY_INSTANCES;
     for (int i = 0; result == PARIAN_OK && i < 6; i++) {
-        result = gl_texture_create(device, GL_FORMAT_RGBA32F, body->atlas_size, body->atlas_size,
-                                   NULL, atlases[i]);
+        *atlases[i] = gl_texture_describe(GL_FORMAT_RGBA32F, body->atlas_size, body->atlas_size);
+        result = gl_texture_allocate(device, atlases[i]);
     }
     for (uint32_t r = 0; result == PARIAN_OK && r < parian_body_register_count(body); r++) {
-        result = gl_vector_create(device, parian_body_register_size(body, r), &made->registers[r]);
+        made->registers[r] = gl_vector_describe(parian_body_register_size(body, r));
+        result = gl_texture_allocate(device, &made->registers[r]);
     }
     return result;
+}
+
+void gl_lit_count(const parian_body *body, uint32_t instance_count, parian_memory *memory)
+{
+    uint64_t size =
+        6 * gl_texture_describe(GL_FORMAT_RGBA32F, body->atlas_size, body->atlas_size).size;
+    for (uint32_t r = 0; r < parian_body_register_count(body); r++) {
+        size += gl_vector_describe(parian_body_register_size(body, r)).size;
+    }
+    memory->bytes[PARIAN_MEMORY_INSTANCES] += instance_count * size;
+    memory->total += instance_count * size;
 }
 
 void gl_lit_destroy(gl_device *device, gl_lit *made)

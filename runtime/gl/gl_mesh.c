@@ -4,7 +4,6 @@
  */
 #include <string.h>
 
-#include "core/memory.h"
 #include "gl/gl_body.h"
 #include "shade/chart_color.h"
 
@@ -12,29 +11,55 @@ typedef struct mesh_corner {
     float position[3], normal[3], uv[2], chart[3];
 } mesh_corner;
 
-static void unroll_body(const parian_body *body, mesh_corner *corner)
+static void copy_body(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    for (uint32_t t = 0; t < body->triangle_count; t++) {
-        for (int k = 0; k < 3; k++, corner++) {
-            memcpy(corner->position, body->vertex_position[body->triangle[t][k]],
-                   sizeof corner->position);
-            memcpy(corner->normal, body->corner_normal[t][k], sizeof corner->normal);
-            memcpy(corner->uv, body->corner_uv[t][k], sizeof corner->uv);
-            parian_chart_color(body->triangle_chart[t], corner->chart);
-        }
+    const parian_body *body = context;
+    mesh_corner *corner = to;
+    for (uint64_t i = first; i < first + count; i++, corner++) {
+        uint64_t t = i / 3, k = i % 3;
+        memcpy(corner->position, body->vertex_position[body->triangle[t][k]],
+               sizeof corner->position);
+        memcpy(corner->normal, body->corner_normal[t][k], sizeof corner->normal);
+        memcpy(corner->uv, body->corner_uv[t][k], sizeof corner->uv);
+        parian_chart_color(body->triangle_chart[t], corner->chart);
     }
 }
 
-static void unroll_surrounding(const parian_surrounding *piece, mesh_corner *corner)
+static void copy_surrounding(const void *context, uint64_t first, uint64_t count, void *to)
 {
-    memset(corner, 0, (size_t)3 * piece->triangle_count * sizeof *corner);
-    for (uint32_t t = 0; t < piece->triangle_count; t++) {
-        for (int k = 0; k < 3; k++, corner++) {
-            memcpy(corner->position, piece->vertex_position[piece->triangle[t][k]],
-                   sizeof corner->position);
-            memcpy(corner->normal, piece->corner_normal[t][k], sizeof corner->normal);
-        }
+    const parian_surrounding *piece = context;
+    mesh_corner *corner = to;
+    memset(corner, 0, count * sizeof *corner);
+    for (uint64_t i = first; i < first + count; i++, corner++) {
+        uint64_t t = i / 3, k = i % 3;
+        memcpy(corner->position, piece->vertex_position[piece->triangle[t][k]],
+               sizeof corner->position);
+        memcpy(corner->normal, piece->corner_normal[t][k], sizeof corner->normal);
     }
+}
+
+static void plan(gl_upload_list *list, uint32_t triangles, gl_array_source source,
+                 const void *context, gl_mesh *mesh)
+{
+    mesh->corner_count = 3 * triangles;
+    mesh->size = (uint64_t)triangles * 3 * sizeof(mesh_corner);
+    gl_upload_mesh(list, mesh, source, context);
+}
+
+void gl_mesh_plan_body(gl_upload_list *list, const parian_body *body, gl_mesh *mesh)
+{
+    plan(list, body->triangle_count, copy_body, body, mesh);
+}
+
+void gl_mesh_plan_surrounding(gl_upload_list *list, const parian_surrounding *surrounding,
+                              gl_mesh *mesh)
+{
+    plan(list, surrounding->triangle_count, copy_surrounding, surrounding, mesh);
+}
+
+uint32_t gl_mesh_corner_size(void)
+{
+    return sizeof(mesh_corner);
 }
 
 static void describe(gl_device *device)
@@ -53,34 +78,33 @@ static void describe(gl_device *device)
     }
 }
 
-parian_result gl_mesh_create(gl_device *device, const parian_body *body,
-                             const parian_surrounding *surrounding, gl_mesh *mesh)
+parian_result gl_mesh_allocate(gl_device *device, gl_mesh *mesh)
 {
-    uint32_t triangles = body ? body->triangle_count : surrounding->triangle_count;
-    uint64_t size = (uint64_t)triangles * 3 * sizeof(mesh_corner);
-    mesh_corner *corner;
-    parian_result result = gl_memory_add(device, size);
+    parian_result result = gl_memory_add(device, mesh->size);
     if (result != PARIAN_OK) {
         return result;
-    }
-    mesh->size = size;
-    mesh->corner_count = 3 * triangles;
-    if (!PARIAN_NEW(device->env, corner, mesh->corner_count)) {
-        return parian_fail(device->env, PARIAN_E_NOMEM, "no memory for %u triangles", triangles);
-    }
-    if (body) {
-        unroll_body(body, corner);
-    } else {
-        unroll_surrounding(surrounding, corner);
     }
     device->gl.GenVertexArrays(1, &mesh->vertex_array);
     device->gl.GenBuffers(1, &mesh->buffer);
     device->gl.BindVertexArray(mesh->vertex_array);
     device->gl.BindBuffer(GL_ARRAY_BUFFER, mesh->buffer);
-    device->gl.BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)size, corner, GL_STATIC_DRAW);
+    device->gl.BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)mesh->size, NULL, GL_STATIC_DRAW);
     describe(device);
-    parian_free(device->env, corner);
-    return PARIAN_OK;
+    result = gl_error_check(device, "mesh", mesh->size);
+    if (result != PARIAN_OK) {
+        gl_mesh described = {.corner_count = mesh->corner_count, .size = mesh->size};
+        gl_mesh_destroy(device, mesh);
+        *mesh = described;
+    }
+    return result;
+}
+
+void gl_mesh_write(gl_device *device, const gl_mesh *mesh, uint64_t first, uint64_t count,
+                   const void *corners)
+{
+    device->gl.BindBuffer(GL_ARRAY_BUFFER, mesh->buffer);
+    device->gl.BufferSubData(GL_ARRAY_BUFFER, (GLintptr)(first * sizeof(mesh_corner)),
+                             (GLsizeiptr)(count * sizeof(mesh_corner)), corners);
 }
 
 void gl_mesh_destroy(gl_device *device, gl_mesh *mesh)
@@ -88,8 +112,8 @@ void gl_mesh_destroy(gl_device *device, gl_mesh *mesh)
     if (mesh->vertex_array) {
         device->gl.DeleteVertexArrays(1, &mesh->vertex_array);
         device->gl.DeleteBuffers(1, &mesh->buffer);
+        gl_memory_remove(device, PARIAN_MEMORY_MESHES, mesh->size);
     }
-    device->memory -= mesh->size;
     memset(mesh, 0, sizeof *mesh);
 }
 

@@ -10,12 +10,12 @@
 
 enum { SEGMENT_FACTORS = 256 };
 
-typedef struct segment_entry {
+typedef struct gl_segment {
     uint32_t run, run_count, factor, unused;
-} segment_entry;
+} gl_segment;
 
 /* Cut the runs of each row; with no place to write, counts the segments. */
-static uint32_t cut_rows(const parian_operator *op, segment_entry *segment, uint32_t *row_segment)
+static uint32_t cut_rows(const parian_operator *op, gl_segment *segment, uint32_t *row_segment)
 {
     uint32_t count = 0;
     for (uint32_t row = 0; row < op->row_count; row++) {
@@ -30,7 +30,7 @@ static uint32_t cut_rows(const parian_operator *op, segment_entry *segment, uint
             }
             if (segment) {
                 segment[count] =
-                    (segment_entry){first, run - first, (uint32_t)op->run_factor[first], 0};
+                    (gl_segment){first, run - first, (uint32_t)op->run_factor[first], 0};
             }
             count++;
         }
@@ -61,53 +61,61 @@ static void copy_scales(const void *context, uint64_t first, uint64_t count, voi
     }
 }
 
-static parian_result create_segments(gl_device *device, const parian_operator *op,
-                                     gl_operator *made)
+static void drop_segments(const parian_env *env, void *context)
 {
-    segment_entry *segment = NULL;
-    uint32_t *row_segment = NULL;
-    made->segment_count = cut_rows(op, NULL, NULL);
-    parian_result result = PARIAN_E_NOMEM;
-    if (!PARIAN_NEW(device->env, segment, made->segment_count) ||
-        !PARIAN_NEW(device->env, row_segment, (size_t)op->row_count + 1)) {
-        parian_fail(device->env, result, "no memory for %u segments", made->segment_count);
-        goto done;
-    }
-    cut_rows(op, segment, row_segment);
-    result =
-        gl_array_upload(device, GL_FORMAT_RGBA32UI, made->segment_count, segment, &made->segment);
-    if (result == PARIAN_OK) {
-        result = gl_array_upload(device, GL_FORMAT_R32UI, (uint64_t)op->row_count + 1, row_segment,
-                                 &made->row_segment);
-    }
-done:
-    parian_free(device->env, segment);
-    parian_free(device->env, row_segment);
-    return result;
+    gl_operator_source *source = context;
+    parian_free(env, source->segment);
+    parian_free(env, source->row_segment);
+    source->segment = NULL;
+    source->row_segment = NULL;
 }
 
-parian_result gl_operator_create(gl_device *device, const parian_operator *op, gl_operator *made)
+static parian_result make_segments(const parian_env *env, void *context)
 {
-    if (op->factor_total > UINT32_MAX) {
-        return parian_fail(device->env, PARIAN_E_UNSUPPORTED,
-                           "an operator of %llu factors, at most 2^32 are possible",
-                           (unsigned long long)op->factor_total);
+    gl_operator_source *source = context;
+    if (!PARIAN_NEW(env, source->segment, source->segment_count) ||
+        !PARIAN_NEW(env, source->row_segment, (size_t)source->op->row_count + 1)) {
+        drop_segments(env, source);
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u segments", source->segment_count);
     }
-    parian_result result = create_segments(device, op, made);
-    if (result == PARIAN_OK) {
-        result =
-            gl_array_create(device, GL_FORMAT_RG32UI, op->run_total, copy_runs, op, &made->run);
-    }
-    if (result == PARIAN_OK) {
-        result =
-            gl_array_upload(device, GL_FORMAT_RGB16F, op->factor_total, op->factor, &made->factor);
-    }
-    if (result == PARIAN_OK) {
-        result = gl_array_create(device, GL_FORMAT_RGBA32F, op->row_count, copy_scales, op,
-                                 &made->scale);
-    }
-    return result == PARIAN_OK ? gl_vector_create(device, made->segment_count, &made->partial)
-                               : result;
+    cut_rows(source->op, source->segment, source->row_segment);
+    return PARIAN_OK;
+}
+
+static void copy_segments(const void *context, uint64_t first, uint64_t count, void *to)
+{
+    const gl_operator_source *source = context;
+    memcpy(to, source->segment + first, count * sizeof *source->segment);
+}
+
+static void copy_row_segments(const void *context, uint64_t first, uint64_t count, void *to)
+{
+    const gl_operator_source *source = context;
+    memcpy(to, source->row_segment + first, count * sizeof *source->row_segment);
+}
+
+void gl_operator_plan(const parian_operator *op, gl_operator_source *source, gl_operator *made,
+                      gl_upload_list *list)
+{
+    const parian_memory_part part = PARIAN_MEMORY_FACTORS;
+    const gl_preparation segments = {make_segments, drop_segments, source};
+    uint64_t rows = (uint64_t)op->row_count + 1;
+    *source = (gl_operator_source){.op = op, .segment_count = cut_rows(op, NULL, NULL)};
+    made->segment_count = source->segment_count;
+    made->segment = gl_array_describe(GL_FORMAT_RGBA32UI, made->segment_count);
+    made->row_segment = gl_array_describe(GL_FORMAT_R32UI, rows);
+    made->run = gl_array_describe(GL_FORMAT_RG32UI, op->run_total);
+    made->factor = gl_array_describe(GL_FORMAT_RGB16F, op->factor_total);
+    made->scale = gl_array_describe(GL_FORMAT_RGBA32F, op->row_count);
+    made->partial = gl_vector_describe(made->segment_count);
+    gl_upload_prepare_begin(list, segments);
+    gl_upload_texture(list, part, &made->segment, made->segment_count, copy_segments, source);
+    gl_upload_texture(list, part, &made->row_segment, rows, copy_row_segments, source);
+    gl_upload_prepare_end(list);
+    gl_upload_texture(list, part, &made->run, op->run_total, copy_runs, op);
+    gl_upload_texture(list, part, &made->factor, op->factor_total, NULL, op->factor);
+    gl_upload_texture(list, part, &made->scale, op->row_count, copy_scales, op);
+    gl_upload_target(list, part, &made->partial);
 }
 
 void gl_operator_destroy(gl_device *device, gl_operator *made)

@@ -25,43 +25,64 @@ void gl_picture_destroy(gl_device *device, gl_picture *picture)
     if (picture->depth) {
         device->gl.DeleteRenderbuffers(1, &picture->depth);
         device->gl.DeleteFramebuffers(1, &picture->framebuffer);
-        device->memory -= picture->depth_size;
+        gl_memory_remove(device, PARIAN_MEMORY_PICTURE, picture->depth_size);
     }
     memset(picture, 0, sizeof *picture);
 }
 
-static parian_result create_reductions(gl_device *device, gl_picture *made)
+/* Side of what n pixels are summed to. */
+static uint32_t reduced(uint32_t n)
 {
-    uint32_t width = made->width, height = made->height;
-    parian_result result = PARIAN_OK;
+    return (n + 7) / 8;
+}
+
+/* What targets of this size are, without making them. */
+static gl_picture describe(uint32_t width, uint32_t height, uint32_t texture_max)
+{
+    uint32_t side = parian_view_supersampling(width, height, texture_max);
+    gl_picture made = {.width = width, .height = height, .side = side};
+    made.samples = gl_texture_describe(GL_FORMAT_RGBA32F, width * side, height * side);
+    made.picture = gl_texture_describe(GL_FORMAT_RGBA32F, width, height);
+    made.srgb = gl_texture_describe(GL_FORMAT_RGBA8, width, height);
+    made.mean = made.logs = gl_texture_describe(GL_FORMAT_RGBA32F, 1, 1);
+    made.depth_size = made.samples.size / 4; /* 24 bits, kept as 32 */
     do {
-        width = (width + 7) / 8;
-        height = (height + 7) / 8;
-        result = gl_texture_create(device, GL_FORMAT_RGBA32F, width, height, NULL,
-                                   &made->reduction[made->reduction_count++]);
-    } while (result == PARIAN_OK && (width > 1 || height > 1));
-    if (result == PARIAN_OK) {
-        result = gl_texture_create(device, GL_FORMAT_RGBA32F, 1, 1, NULL, &made->mean);
+        width = reduced(width);
+        height = reduced(height);
+        made.reduction[made.reduction_count++] =
+            gl_texture_describe(GL_FORMAT_RGBA32F, width, height);
+    } while (width > 1 || height > 1);
+    return made;
+}
+
+void gl_picture_count(uint32_t width, uint32_t height, parian_memory *memory)
+{
+    const gl_picture made = describe(width, height, 16384);
+    uint64_t size = made.samples.size + made.depth_size + made.picture.size + made.srgb.size +
+                    made.mean.size + made.logs.size;
+    for (int i = 0; i < made.reduction_count; i++) {
+        size += made.reduction[i].size;
     }
-    return result == PARIAN_OK
-               ? gl_texture_create(device, GL_FORMAT_RGBA32F, 1, 1, NULL, &made->logs)
-               : result;
+    memory->bytes[PARIAN_MEMORY_PICTURE] += size;
+    memory->total += size;
 }
 
 static parian_result create_framebuffer(gl_device *device, gl_picture *made)
 {
     const parian_gl_api *gl = &device->gl;
-    parian_result result =
-        gl_memory_add(device, (uint64_t)made->samples.width * made->samples.height * 4);
+    parian_result result = gl_memory_add(device, made->depth_size);
     if (result != PARIAN_OK) {
         return result;
     }
-    made->depth_size = (uint64_t)made->samples.width * made->samples.height * 4;
     gl->GenFramebuffers(1, &made->framebuffer);
     gl->GenRenderbuffers(1, &made->depth);
     gl->BindRenderbuffer(GL_RENDERBUFFER, made->depth);
     gl->RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, (GLsizei)made->samples.width,
                             (GLsizei)made->samples.height);
+    result = gl_error_check(device, "depth buffer", made->depth_size);
+    if (result != PARIAN_OK) {
+        return result;
+    }
     gl->BindFramebuffer(GL_FRAMEBUFFER, made->framebuffer);
     gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
                              made->samples.name, 0);
@@ -74,6 +95,21 @@ static parian_result create_framebuffer(gl_device *device, gl_picture *made)
     return PARIAN_OK;
 }
 
+static parian_result create_targets(gl_device *device, gl_picture *made)
+{
+    gl_texture *targets[5] = {&made->samples, &made->picture, &made->srgb, &made->mean,
+                              &made->logs};
+    parian_result result = PARIAN_OK;
+    for (int i = 0; i < 5 && result == PARIAN_OK; i++) {
+        result = gl_texture_allocate(device, targets[i]);
+    }
+    for (int i = 0; i < made->reduction_count && result == PARIAN_OK; i++) {
+        result = gl_texture_allocate(device, &made->reduction[i]);
+    }
+    return result == PARIAN_OK ? create_framebuffer(device, made) : result;
+}
+
+/* Targets of another size go before the new ones come: what a smaller picture frees is free. */
 parian_result gl_picture_prepare(parian_renderer *renderer, uint32_t width, uint32_t height)
 {
     gl_state *state = renderer->state;
@@ -83,23 +119,9 @@ parian_result gl_picture_prepare(parian_renderer *renderer, uint32_t width, uint
         return PARIAN_OK;
     }
     gl_picture_destroy(device, made);
-    made->width = width;
-    made->height = height;
-    made->side = parian_view_supersampling(width, height, (uint32_t)device->texture_max);
-    parian_result result = gl_texture_create(device, GL_FORMAT_RGBA32F, width * made->side,
-                                             height * made->side, NULL, &made->samples);
-    if (result == PARIAN_OK) {
-        result = gl_texture_create(device, GL_FORMAT_RGBA32F, width, height, NULL, &made->picture);
-    }
-    if (result == PARIAN_OK) {
-        result = gl_texture_create(device, GL_FORMAT_RGBA8, width, height, NULL, &made->srgb);
-    }
-    if (result == PARIAN_OK) {
-        result = create_reductions(device, made);
-    }
-    if (result == PARIAN_OK) {
-        result = create_framebuffer(device, made);
-    }
+    *made = describe(width, height, (uint32_t)device->texture_max);
+    device->part = PARIAN_MEMORY_PICTURE;
+    parian_result result = create_targets(device, made);
     if (result != PARIAN_OK) {
         gl_picture_destroy(device, made);
     }

@@ -30,10 +30,13 @@ typedef struct gl_state {
     gl_texture light, layer, image, shadow;
     GLuint shadow_framebuffer;
     gl_picture picture;
+    gl_body_source *source; /* [body_count], while the scene is uploaded */
+    gl_upload_list upload;
 } gl_state;
 
 /* gl_light.c: upload the light tables and pictures; draw the shadow maps; set what
  * shaders/lights.glsl reads. */
+void gl_lights_count(const parian_light_list *list, parian_memory *memory);
 parian_result gl_lights_upload(parian_renderer *renderer);
 parian_result gl_shadow_run(parian_renderer *renderer);
 /* scale: of the instance that is lit, 1 for surroundings. */
@@ -46,7 +49,8 @@ void gl_product_run(parian_renderer *renderer);
 void gl_filter_run(parian_renderer *renderer);
 void gl_gutter_run(parian_renderer *renderer);
 
-/* gl_picture.c */
+/* gl_picture.c. Counted for a context whose textures have at least 16384 texels a side. */
+void gl_picture_count(uint32_t width, uint32_t height, parian_memory *memory);
 parian_result gl_picture_prepare(parian_renderer *renderer, uint32_t width, uint32_t height);
 void gl_picture_destroy(gl_device *device, gl_picture *picture);
 void gl_shade_run(parian_renderer *renderer, const parian_draw_desc *desc);

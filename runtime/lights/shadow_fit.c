@@ -174,11 +174,13 @@ parian_result parian_shadow_fit(const parian_env *env, parian_light_list *list,
     vec3_sub(diagonal, upper, lower);
     fit_scene scene = {lower, upper, shadow_size, vec3_length(diagonal)};
     const parian_ball *second = has_surroundings ? everything : NULL;
-    parian_free(env, list->layer);
-    if (!PARIAN_NEW0(env, list->layer, (size_t)list->sample_count * LAYERS_PER_SAMPLE_MAX)) {
+    parian_shadow_layer *layer;
+    if (!PARIAN_NEW0(env, layer, (size_t)list->sample_count * LAYERS_PER_SAMPLE_MAX)) {
         return parian_fail(env, PARIAN_E_NOMEM, "no memory for shadow maps of %u light samples",
                            list->sample_count);
     }
+    parian_free(env, list->layer);
+    list->layer = layer;
     uint32_t total = fit_all(list, &scene, bodies, second);
     if (total > LAYER_TOTAL_MAX) {
         return parian_fail(env, PARIAN_E_LIMIT,

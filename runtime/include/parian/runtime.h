@@ -65,7 +65,8 @@ typedef struct parian_renderer_desc {
      * and current in every call on this renderer. */
     void *(*get_proc_address)(const char *name);
     uint32_t shadow_size;     /* side of a shadow map, texels; 0 takes 2048 */
-    uint64_t memory_budget;   /* bytes of GL memory; 0 is no limit */
+    uint64_t memory_budget;   /* bytes of GL memory (see parian_memory below); 0 is no limit */
+    bool deferred_upload;     /* upload nothing yet: parian_renderer_upload does, a slice at a time */
 } parian_renderer_desc;
 
 /* Errors: PARIAN_E_ARGUMENT, PARIAN_E_UNSUPPORTED (GL version or extension, named in the log),
@@ -76,7 +77,6 @@ void parian_renderer_destroy(parian_renderer *renderer);
 
 /* "Mesa llvmpipe ..., OpenGL ES 3.0", or "C evaluation". */
 const char *parian_renderer_name(const parian_renderer *renderer);
-uint64_t parian_renderer_memory(const parian_renderer *renderer); /* bytes of GL memory in use */
 
 /* Replace the lights (copied, images included). Types that this renderer cannot do are
  * PARIAN_E_UNSUPPORTED, lights with absurd numbers PARIAN_E_ARGUMENT; the old lights then stay. */
@@ -181,6 +181,52 @@ typedef struct parian_pass_time {
 enum { PARIAN_PASS_MAX = 16 };
 void parian_renderer_set_timing(parian_renderer *renderer, bool on);
 size_t parian_renderer_get_times(const parian_renderer *renderer, parian_pass_time times[PARIAN_PASS_MAX]);
+
+/* ---- GL memory and uploads --------------------------------------------------------------------- */
+
+/* Bytes of textures and buffers as this library asks for them; a driver may round up (many keep three
+ * 16-bit components as four). */
+typedef enum parian_memory_part {
+    PARIAN_MEMORY_FACTORS = 0, /* operators: factors and their lists */
+    PARIAN_MEMORY_KERNELS = 1, /* of the local part, with the lists of border texels */
+    PARIAN_MEMORY_ATLAS = 2,   /* arrays by texel: surface, gutter */
+    PARIAN_MEMORY_MESHES = 3,
+    PARIAN_MEMORY_INSTANCES = 4, /* E, B and registers of each instance */
+    PARIAN_MEMORY_LIGHTS = 5,  /* tables and projected pictures */
+    PARIAN_MEMORY_SHADOWS = 6,
+    PARIAN_MEMORY_PICTURE = 7, /* samples, depth, pictures and sums of the picture's size */
+    PARIAN_MEMORY_PART_COUNT = 8
+} parian_memory_part;
+
+typedef struct parian_memory {
+    uint64_t bytes[PARIAN_MEMORY_PART_COUNT];
+    uint64_t total;
+} parian_memory;
+
+/* GL memory in use: all of it, and by part. 0 with the C evaluation. */
+uint64_t parian_renderer_memory(const parian_renderer *renderer);
+parian_memory parian_renderer_get_memory(const parian_renderer *renderer);
+
+typedef struct parian_memory_desc { /* zero is default */
+    const parian_light *lights; /* NULL: none */
+    size_t light_count;
+    uint32_t instance_count; /* 0: one */
+    uint32_t width, height;  /* of pictures; 0: none are drawn */
+} parian_memory_desc;
+
+/* What a renderer with this desc would use, before it exists and without any GL; desc may be NULL. Counts the
+ * smaller shadow maps that a budget enforces, but refuses nothing. Errors: PARIAN_E_ARGUMENT, PARIAN_E_NOMEM,
+ * and those of parian_renderer_set_lights. */
+parian_result parian_renderer_estimate_memory(const parian_env *env, const parian_scene *scene,
+                                              const parian_renderer_desc *renderer,
+                                              const parian_memory_desc *desc, parian_memory *memory);
+
+/* Upload about max_bytes more (0: everything) of a renderer with deferred_upload, and tell in *bytes_left (may
+ * be NULL) what is left. A slice is at least a row of a texture, at most 256 kB; kernels that are rebuilt at
+ * load are computed in one go by the slice that needs them first. Until nothing is left, what relights, draws or
+ * reads results is PARIAN_E_ARGUMENT. After an error the next call tries again where this one failed.
+ * Errors: PARIAN_E_NOMEM, PARIAN_E_UNSUPPORTED, PARIAN_E_DEVICE. */
+parian_result parian_renderer_upload(parian_renderer *renderer, uint64_t max_bytes, uint64_t *bytes_left);
 
 #ifdef __cplusplus
 }
