@@ -25,10 +25,10 @@ typedef struct raw_options {
 } raw_options;
 
 static const char SUMMARY[] =
-    "Turns a model and a measured medium into a .parian asset that the runtime relights.\n"
-    "INPUT is .glb .gltf .obj .ply .stl or .off. In a glTF scene every node whose material\n"
-    "scatters is a body; the other meshes are its diffuse surroundings. Bodies beyond four\n"
-    "share the vertices and texels of four.";
+    "Turns a model and a measured medium into a .parian asset that the runtime\n"
+    "relights. INPUT is .glb .gltf .obj .ply .stl or .off. In a glTF scene every node\n"
+    "whose material scatters is a body; the other meshes are its diffuse\n"
+    "surroundings. Bodies beyond four share the vertices and texels of four.";
 
 static const parian_subcommand COMMANDS[] = {
     {"reference", "ground truth instead: a BSSRDF integrated over the surface, or path tracing"}};

@@ -65,8 +65,10 @@ static parian_result read_points(const parian_env *env, const char *path, parian
                         points->count, points->rank);
     }
     for (size_t i = 0; r == PARIAN_OK && i < points->count; i++) {
-        if (!isfinite(points->value[i])) {
-            r = parian_fail(env, PARIAN_E_FORMAT, "%s: point %zu is not finite", path, i / 3);
+        if (!(fabs(points->value[i]) < 1e12)) {
+            r = parian_fail(env, PARIAN_E_FORMAT,
+                            "%s: point %zu: %g is not finite or beyond 1e12 m", path, i / 3,
+                            points->value[i]);
         }
     }
     return r;
@@ -104,7 +106,7 @@ static parian_result load_scene(const parian_env *env, reference_run *run)
                         o->scene.input);
     }
     if (r == PARIAN_OK && o->field_file) {
-        r = parian_medium_field_attach(env, &run->field, &run->scene);
+        r = parian_medium_field_attach(env, o->field_file, &run->field, &run->scene);
     }
     if (r == PARIAN_OK) {
         r = o->receiver_file

@@ -20,9 +20,13 @@ static bool has_length(const float v[3])
 
 static bool spans_area(const float u[3], const float v[3])
 {
-    const float normal[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                             u[0] * v[1] - u[1] * v[0]};
-    return has_length(normal);
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        double part = (double)u[i] * v[j] - (double)u[j] * v[i];
+        square += part * part;
+    }
+    return square > 0 && isfinite(square);
 }
 
 static const char *image_fault(const parian_light_image *image)

@@ -10,7 +10,7 @@
 #include "core/memory.h"
 
 enum { VALUES = 6, NODES_MAX = 4096 };
-static const double PER_MM = 1e3;
+static const double PER_MM = 1e3, COEFFICIENT_MAX = 1e15; /* m^-1, as path tracing takes it */
 
 parian_result parian_medium_field_check(const parian_env *env, const char *path,
                                         const parian_npy *array)
@@ -54,8 +54,23 @@ static void fill_node(const parian_npy *array, const parian_medium *medium, size
     }
 }
 
-static parian_result attach_to_body(const parian_env *env, const parian_npy *array,
-                                    parian_reference_body *body)
+/* Whether a node, with factors already multiplied, can be traced. */
+static parian_result check_node(const parian_env *env, const char *path,
+                                const parian_medium_field *field, size_t node)
+{
+    for (int c = 0; c < 3; c++) {
+        double s = (double)field->sigma_s[node][c], a = (double)field->sigma_a[node][c];
+        if (!(s < COEFFICIENT_MAX && a < COEFFICIENT_MAX)) {
+            return parian_fail(env, PARIAN_E_FORMAT,
+                               "%s: node %zu has sigma_s %g, sigma_a %g m^-1, expected below %g",
+                               path, node, s, a, COEFFICIENT_MAX);
+        }
+    }
+    return PARIAN_OK;
+}
+
+static parian_result attach_to_body(const parian_env *env, const char *path,
+                                    const parian_npy *array, parian_reference_body *body)
 {
     size_t nodes = (size_t)(array->shape[0] * array->shape[1] * array->shape[2]);
     parian_medium_field *field;
@@ -70,18 +85,20 @@ static parian_result attach_to_body(const parian_env *env, const parian_npy *arr
         field->size[a] = (uint32_t)array->shape[2 - a];
     }
     parian_mesh_bounds(&body->mesh, field->lower, field->upper);
-    for (size_t i = 0; i < nodes; i++) {
+    parian_result r = PARIAN_OK;
+    for (size_t i = 0; r == PARIAN_OK && i < nodes; i++) {
         fill_node(array, &body->medium, i, field->sigma_s[i], field->sigma_a[i]);
+        r = check_node(env, path, field, i);
     }
-    return PARIAN_OK;
+    return r;
 }
 
-parian_result parian_medium_field_attach(const parian_env *env, const parian_npy *array,
-                                         parian_reference_scene *scene)
+parian_result parian_medium_field_attach(const parian_env *env, const char *path,
+                                         const parian_npy *array, parian_reference_scene *scene)
 {
     parian_result r = PARIAN_OK;
     for (uint32_t b = 0; r == PARIAN_OK && b < scene->body_count; b++) {
-        r = attach_to_body(env, array, &scene->bodies[b]);
+        r = attach_to_body(env, path, array, &scene->bodies[b]);
     }
     return r;
 }

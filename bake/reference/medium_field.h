@@ -15,8 +15,9 @@ parian_result parian_medium_field_check(const parian_env *env, const char *path,
                                         const parian_npy *array);
 
 /* Give every body a field of the (checked) array over its own box; factors multiply both
- * coefficients of the body's medium. Errors: PARIAN_E_NOMEM. */
-parian_result parian_medium_field_attach(const parian_env *env, const parian_npy *array,
-                                         parian_reference_scene *scene);
+ * coefficients of the body's medium. Errors: PARIAN_E_NOMEM; PARIAN_E_FORMAT, naming the file:
+ * coefficients from 1e15 m^-1. */
+parian_result parian_medium_field_attach(const parian_env *env, const char *path,
+                                         const parian_npy *array, parian_reference_scene *scene);
 
 #endif

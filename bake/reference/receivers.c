@@ -13,6 +13,8 @@
 /* Nearest places keep this share of a triangle away from its edges, where a ray could not tell the
  * sides. */
 static const double RIM_SHARE = 1e-6;
+/* Of the bodies' width: points farther from any surface than this are worth a warning. */
+static const double FAR_SHARE = 0.1;
 
 static parian_result allocate_receivers(const parian_env *env, size_t count,
                                         parian_receivers *receivers)
@@ -243,6 +245,22 @@ static parian_result check_points(const parian_env *env, const double (*point)[3
     return PARIAN_OK;
 }
 
+/* A file in other units, or for another place, is moved a long way: say so. */
+static void warn_of_moves(const parian_env *env, const parian_reference_scene *scene,
+                          const double *distance, size_t count)
+{
+    double farthest = 0;
+    for (size_t i = 0; i < count; i++) {
+        farthest = fmax(farthest, distance[i]);
+    }
+    if (farthest > FAR_SHARE * scene->extent) {
+        parian_log(
+            env, PARIAN_LOG_WARNING,
+            "receivers were moved by up to %.3g m to the nearest surface of bodies %.3g m wide",
+            farthest, scene->extent);
+    }
+}
+
 static parian_result search_bodies(const parian_env *env, const parian_reference_scene *scene,
                                    const double (*point)[3], parian_receivers *receivers)
 {
@@ -256,6 +274,9 @@ static parian_result search_bodies(const parian_env *env, const parian_reference
     }
     for (uint32_t b = 0; r == PARIAN_OK && b < scene->body_count; b++) {
         r = search_body(env, scene, b, point, distance, receivers);
+    }
+    if (r == PARIAN_OK) {
+        warn_of_moves(env, scene, distance, receivers->count);
     }
     parian_free(env, distance);
     return r;

@@ -216,14 +216,17 @@ static bool prepare_search(const query *q, search *s, bool *near_by)
         s->x[k] = (float)x;
     }
     double far = sqrt(x2), length = sqrt(light2);
-    if (!(far <= OUT_OF_SIGHT && length > 0 && isfinite(length) && q->max_length >= 0)) {
+    bool placed =
+        isfinite(length) && (length > 0 || !q->at_infinity); /* a lamp may be at the centre */
+    if (!(far <= OUT_OF_SIGHT && placed && q->max_length >= 0)) {
         return false;
     }
     *near_by = !q->at_infinity && length <= FAR_AWAY;
     for (int k = 0; k < 3; k++) {
         s->light[k] = (float)(*near_by ? light[k] : light[k] / length);
     }
-    s->width = (float)(q->at_infinity ? 1e-6 : 1.01 / length + 1e-6);
+    s->width =
+        (float)(q->at_infinity ? 1e-6 : 1.01 / fmax(length, 1) + 1e-6); /* of far ones alone */
     s->reach = parian_float_above(fmin(q->max_length / r->radius, far + 2));
     s->pad = (float)(2e-6 * (1 + far));
     s->inverse = (float)r->eta.inverse;

@@ -88,9 +88,14 @@ static parian_result read_element(npy_file *file)
             }
         }
     }
+    if (!value || (*value != '\'' && *value != '"')) {
+        return parian_fail(file->env, PARIAN_E_FORMAT,
+                           "%s: elements %s, expected little-endian numbers", file->path,
+                           value ? "are records" : "are not described");
+    }
     return parian_fail(file->env, PARIAN_E_FORMAT,
-                       "%s: elements are %.16s, expected little-endian numbers", file->path,
-                       value ? value : "not described");
+                       "%s: elements are '%.*s', expected little-endian numbers", file->path,
+                       (int)strcspn(value + 1, "'\""), value + 1);
 }
 
 static parian_result read_shape(const npy_file *file, parian_npy *array)

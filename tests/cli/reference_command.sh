@@ -25,7 +25,7 @@ contains "$out" "Examples:"
 expect 0 reference --version
 contains "$out" "parian-bake "
 expect 0 parian-bake --help
-contains "$out" "parian-bake reference"
+contains "$out" "  reference  ground truth"
 
 # Mistakes are found before any work, in one line.
 mistake() {
@@ -80,6 +80,13 @@ one_line "$err"
 printf '\0\0\300\177\0\0\0\0\0\0\0\0' | npy "$work/bad.npy" '<f4' '1, 3'
 expect 3 reference "${base[@]}" --light $light --receivers "$work/bad.npy" -o "$work/none"
 contains "$err" "not finite"
+printf '\0\0\0\0\345\234\352\102' | cat - <(printf '%16s' '' | tr ' ' '\0') | npy "$work/bad.npy" '<f8' '1, 3' # 2.3e14 m
+expect 3 reference "${base[@]}" --light $light --receivers "$work/bad.npy" -o "$work/none"
+contains "$err" "beyond 1e12 m"
+one_line "$err"
+printf '%48s' '' | npy "$work/bad.npy" '<c8' '2, 3'
+expect 3 reference "${base[@]}" --light $light --receivers "$work/bad.npy" -o "$work/none"
+contains "$err" "elements are '<c8', expected"
 printf '%32s' '' | npy "$work/bad.npy" '<f4' '2, 4'
 expect 3 reference "${base[@]}" --light $light --receivers "$work/bad.npy" -o "$work/none"
 contains "$err" "[n][3]"
@@ -92,6 +99,14 @@ contains "$err" "expected 2 to"
 one_line "$err"
 expect 3 reference "${base[@]}" --light $light --model path --field "$work/flat.npy" -q -o "$work/none"
 [ "$(wc -l < "$err")" = 1 ] || fail "-q: more than one line"
+
+printf '\0\0\200\177%.0s' 1 2 3 4 5 6 7 8 | tr '\177\200' '\140\255' | npy "$work/flat.npy" '<f4' '2, 2, 2' # 1e20
+expect 3 reference "${base[@]}" --light $light --model path --field "$work/flat.npy" -o "$work/none"
+contains "$err" "flat.npy: node 0"
+one_line "$err"
+printf '\0\0\200\100%.0s' 1 2 3 | npy "$work/far.npy" '<f4' '1, 3' # 4 m away from 20 mm
+expect 0 reference "${base[@]}" --samples 64 --light $light --receivers "$work/far.npy" -o "$work/far"
+contains "$err" "were moved by up to"
 
 # Every BSSRDF model: arrays, summary, the same bytes for any threads.
 for name in dipole dipole-flux directional pbd; do

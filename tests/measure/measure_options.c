@@ -14,26 +14,25 @@ enum {
     SAMPLES_MAX = 2000000000
 };
 
-static const char SUMMARY[] = "Measures methods and settings against ground truth: error of the "
-                              "scattered radiosity B against\n"
-                              "milliseconds per relight, bytes of asset and bake seconds. INPUT is "
-                              "a model, which is baked with\n"
-                              "every --bake, or a baked .parian asset. Writes results.csv, "
-                              "results.json, results.md, plots and maps.";
+static const char SUMMARY[] =
+    "Measures methods and settings against ground truth: error of the scattered\n"
+    "radiosity B against milliseconds per relight, bytes of asset and bake seconds.\n"
+    "INPUT is a model, which is baked with every --bake, or a baked .parian asset.\n"
+    "Writes results.csv, results.json, results.md, plots and maps.";
 
 static const char EPILOGUE[] =
-    "Truth is taken at texels of the asset chosen evenly by area, on the surface of the model "
-    "where INPUT\n"
-    "is one, else on the asset's own. Bakes and truths are kept by content in the cache.\n"
+    "Truth is taken at texels of the asset chosen evenly by area, on the surface of\n"
+    "the model where INPUT is one, else on the asset's own. Bakes and truths are\n"
+    "kept by content in the cache. `parian-measure hard-cases -o DIR` runs the table\n"
+    "of hard cases.\n"
     "\n"
     "Examples:\n"
-    "  parian-measure bunny.ply --scale 50mm --material marble --lights studio.json -o measured\n"
-    "  parian-measure bunny.ply --scale 50mm --bake '--quality preview' --bake '--form paper' "
-    "--lights\n"
-    "      studio.json -o measured\n"
-    "  parian-measure bunny.parian --lights a.json --lights b.json --reference path "
-    "--standard-error 0.02\n"
-    "      --receivers 200 -o measured";
+    "  parian-measure bunny.ply --scale 50mm --material marble --lights studio.json \\\n"
+    "      -o measured\n"
+    "  parian-measure bunny.ply --scale 50mm --bake '--quality preview' \\\n"
+    "      --bake '--form paper' --lights studio.json -o measured\n"
+    "  parian-measure bunny.parian --lights a.json --lights b.json --reference path \\\n"
+    "      --standard-error 0.02 --receivers 200 -o measured";
 
 static const parian_subcommand COMMANDS[] = {
     {"hard-cases", "bakes and measures the cases that break naive code, a verdict for each"}};

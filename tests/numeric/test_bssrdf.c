@@ -94,6 +94,44 @@ static void dipole_matches_table(void **state)
     }
 }
 
+/* Fluence at p of one channel's two point sources for light that enters at the origin along -z, per
+ * unit of flux, over albedo' / (4 pi D): a source z_r below the surface and its image z_v above. */
+static double sources_at(const parian_dipole *d, const double p[3])
+{
+    double near = sqrt(p[0] * p[0] + p[1] * p[1] + (p[2] + d->z_r) * (p[2] + d->z_r));
+    double far = sqrt(p[0] * p[0] + p[1] * p[1] + (p[2] - d->z_v) * (p[2] - d->z_v));
+    return exp(-d->sigma_tr * near) / near - exp(-d->sigma_tr * far) / far;
+}
+
+/* Away from the plane the flux form is -D times the gradient of the fluence along the receiver's
+ * normal, and not the same with both ends swapped. Central differences of 1e-5 of the distance:
+ * 1e-8. */
+static void flux_is_the_gradient_at_the_receiver(void **state)
+{
+    static const double place[][2][3] = {{{1e-3, 0.4e-3, -0.5e-3}, {0.6, 0.48, 0.64}},
+                                         {{-0.3e-3, 1.7e-3, -2e-3}, {-0.36, 0.48, -0.8}},
+                                         {{0.1e-3, 0.2e-3, -1.5e-3}, {0, 0, -1}}};
+    parian_bssrdf_model *flux = make(&marble, PARIAN_REFERENCE_DIPOLE_FLUX, false, false);
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        const double *x = place[i][0], *n = place[i][1];
+        double R[3], step = 1e-5 * sqrt(parian_dot3(x, x));
+        parian_bssrdf_value(flux, origin, up, up, x, n, R);
+        for (int c = 0; c < 3; c++) {
+            parian_dipole d = parian_dipole_make(&marble, c, false);
+            double before[3], after[3];
+            for (int k = 0; k < 3; k++) {
+                before[k] = x[k] - step * n[k];
+                after[k] = x[k] + step * n[k];
+            }
+            double slope = (sources_at(&d, after) - sources_at(&d, before)) / (2 * step);
+            assert_true(R[c] > 0);
+            assert_close(R[c], -d.albedo / (4 * PARIAN_PI) * slope, 1e-6);
+        }
+    }
+    parian_bssrdf_destroy(NULL, flux);
+}
+
 /* The fit is a different number: at eta 1.5 by about 2e-4 in F_dr, hence in R_d. */
 static void fit_has_an_effect(void **state)
 {
@@ -449,9 +487,13 @@ static void directional_is_invariant(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(dipole_matches_table),      cmocka_unit_test(fit_has_an_effect),
-        cmocka_unit_test(directional_matches_table), cmocka_unit_test(directional_raw_totals),
-        cmocka_unit_test(directional_normalised),    cmocka_unit_test(directional_is_invariant),
+        cmocka_unit_test(dipole_matches_table),
+        cmocka_unit_test(flux_is_the_gradient_at_the_receiver),
+        cmocka_unit_test(fit_has_an_effect),
+        cmocka_unit_test(directional_matches_table),
+        cmocka_unit_test(directional_raw_totals),
+        cmocka_unit_test(directional_normalised),
+        cmocka_unit_test(directional_is_invariant),
         cmocka_unit_test(documented_totals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -158,6 +158,28 @@ static void spot_has_its_flux(void **state)
     }
 }
 
+/* Between the cones smoothstep of the cosine's share: 0 0, 1/4 5/32, 1/2 1/2, 3/4 27/32, 1 1. */
+static void spot_fades_by_smoothstep(void **state)
+{
+    (void)state;
+    const parian_light light = {.type = PARIAN_LIGHT_SPOT,
+                                .direction = {0, 0, -1},
+                                .color = {1, 1, 1},
+                                .inner_deg = 20,
+                                .outer_deg = 50};
+    static const double expected[] = {0, 5.0 / 32, 0.5, 27.0 / 32, 1};
+    parian_light_sampler *sampler = make_sampler(&light);
+    for (int k = 1; k < 5; k++) {
+        double inner = cos(20 * pi / 180), outer = cos(50 * pi / 180);
+        double cosine = outer + 0.25 * k * (inner - outer), sine = sqrt(1 - cosine * cosine);
+        const double x[3] = {3 * sine, 0, -3 * cosine};
+        parian_light_sample sample;
+        assert_true(parian_light_sampler_sample(sampler, 0, x, 0, 0, &sample));
+        assert_close(sample.irradiance[0], expected[k] / 9, 1e-9);
+    }
+    parian_light_sampler_destroy(sampler);
+}
+
 /* The slide's square stands around the outer cone, its top towards up: a beam along -z with up +y
  * throws the upper right pixel to +x +y, as seen along the beam. Black beyond the square; between
  * centres bilinear. */
@@ -263,6 +285,33 @@ static void rect_has_its_form_factor(void **state)
         assert_true(E[0] == 0); /* its back is dark */
         parian_light_sampler_destroy(sampler);
     }
+}
+
+/* What a ray sees: the shining side of a rectangle hides the sky behind it, its back hides nothing.
+ */
+static void rect_hides_the_sky(void **state)
+{
+    (void)state;
+    const parian_light lights[2] = {{.type = PARIAN_LIGHT_ENVIRONMENT, .color = {7, 7, 7}},
+                                    {.type = PARIAN_LIGHT_RECT,
+                                     .position = {0, 0, 1},
+                                     .axis_u = {0, 1, 0},
+                                     .axis_v = {1, 0, 0},
+                                     .color = {1, 2, 3}}};
+    const double below[3] = {0.2, 0.1, 0}, above[3] = {0.2, 0.1, 2}, up[3] = {0, 0, 1},
+                 down[3] = {0, 0, -1};
+    parian_light_sampler *sampler = NULL;
+    double L[3], distance;
+    assert_int_equal(parian_light_sampler_create(NULL, lights, 2, &sampler), PARIAN_OK);
+    parian_light_sampler_radiance(sampler, PARIAN_RAY_NONE, below, up, L, &distance);
+    assert_true(L[0] == 1 && L[1] == 2 && L[2] == 3 && distance == 1);
+    parian_light_sampler_radiance(sampler, 0, below, up, L, &distance);
+    assert_true(L[0] == 7 && distance == INFINITY); /* the sky alone was asked for */
+    parian_light_sampler_radiance(sampler, PARIAN_RAY_NONE, above, down, L, &distance);
+    assert_true(L[0] == 7 && L[2] == 7 && distance == INFINITY);
+    parian_light_sampler_radiance(sampler, 1, above, down, L, &distance);
+    assert_true(L[0] == 0 && distance == INFINITY);
+    parian_light_sampler_destroy(sampler);
 }
 
 static void rect_stays_finite_on_itself(void **state)
@@ -651,8 +700,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(point_and_directional),
         cmocka_unit_test(spot_has_its_flux),
+        cmocka_unit_test(spot_fades_by_smoothstep),
         cmocka_unit_test(slide_is_upright),
         cmocka_unit_test(rect_has_its_form_factor),
+        cmocka_unit_test(rect_hides_the_sky),
         cmocka_unit_test(rect_stays_finite_on_itself),
         cmocka_unit_test(sky_totals_and_agrees),
         cmocka_unit_test(sky_is_the_right_way_round),

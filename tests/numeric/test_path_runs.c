@@ -134,11 +134,18 @@ static void wrong_checkpoints_are_refused(void **state)
     assert_int_equal(parian_reference_path(&mine.env, &scene, &receivers, &desc, &result),
                      PARIAN_E_INTERRUPTED);
     parian_reference_result_free(test_env(2), &result);
-    desc.seed++;
-    assert_int_equal(parian_reference_path(test_env(2), &scene, &receivers, &desc, &result),
-                     PARIAN_E_FORMAT);
-    parian_reference_result_free(test_env(2), &result);
-    desc.seed--;
+    const parian_path_desc others[] = {
+        {.samples = 301, .seed = 13, .checkpoint = file},
+        {.samples = 300, .seed = 14, .checkpoint = file},
+        {.samples = 300, .seed = 13, .checkpoint = file, .standard_error = 1e-3},
+        {.samples = 300, .seed = 13, .checkpoint = file, .patch = 1e-4},
+        {.samples = 300, .seed = 13, .checkpoint = file, .walk = PARIAN_WALK_ADJOINT}};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        assert_int_equal(
+            parian_reference_path(test_env(2), &scene, &receivers, &others[i], &result),
+            PARIAN_E_FORMAT);
+        parian_reference_result_free(test_env(2), &result);
+    }
     for (long at = 0; at < 400; at += 57) {
         damage(file, at);
         assert_int_equal(parian_reference_path(test_env(2), &scene, &receivers, &desc, &result),

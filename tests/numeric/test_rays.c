@@ -289,6 +289,41 @@ static void small_body_above_large_floor(void **state)
     parian_mesh_free(NULL, &floor);
 }
 
+/* A ray that starts on triangle t of one mesh still meets triangle t of another. */
+static void triangles_are_skipped_in_their_own_mesh(void **state)
+{
+    (void)state;
+    parian_mesh mesh[2] = {{0}};
+    parian_rays *rays = NULL;
+    parian_ray_hit hit;
+    for (int m = 0; m < 2; m++) {
+        assert_int_equal(test_plane(NULL, 1, 1, &mesh[m]), PARIAN_OK);
+        for (uint32_t v = 0; v < mesh[m].vertex_count; v++) {
+            mesh[m].position[v][2] += m;
+        }
+    }
+    const parian_mesh *both[2] = {&mesh[0], &mesh[1]};
+    assert_int_equal(parian_rays_create(NULL, both, 2, &rays), PARIAN_OK);
+    for (uint32_t m = 0; m < 2; m++) {
+        for (uint32_t t = 0; t < 2; t++) {
+            parian_ray ray = {
+                .length = INFINITY, .mesh = m, .triangle = t, .direction = {0, 0, m ? -1 : 1}};
+            for (int k = 0; k < 3; k++) {
+                for (int c = 0; c < 3; c++) {
+                    ray.origin[k] += mesh[m].position[mesh[m].triangle[t][c]][k] / 3;
+                }
+            }
+            assert_true(parian_rays_nearest(rays, &ray, PARIAN_RAY_NONE, &hit));
+            assert_true(hit.mesh == 1 - m && hit.triangle == t && fabs(hit.distance - 1) < 1e-12);
+            assert_true(parian_rays_blocked(rays, &ray, PARIAN_RAY_NONE));
+            assert_false(parian_rays_blocked(rays, &ray, m));
+        }
+    }
+    parian_rays_destroy(rays);
+    parian_mesh_free(NULL, &mesh[0]);
+    parian_mesh_free(NULL, &mesh[1]);
+}
+
 static void what_holds_no_surface_is_never_met(void **state)
 {
     (void)state;
@@ -350,6 +385,7 @@ int main(void)
         cmocka_unit_test(soup_of_any_size_and_place),
         cmocka_unit_test(closed_mesh_has_no_leak),
         cmocka_unit_test(small_body_above_large_floor),
+        cmocka_unit_test(triangles_are_skipped_in_their_own_mesh),
         cmocka_unit_test(what_holds_no_surface_is_never_met),
         cmocka_unit_test(every_failed_allocation_is_reported),
     };

@@ -291,6 +291,45 @@ static void blobs_agree_with_the_plain_search(void **state)
     }
 }
 
+/* A lamp in the very middle of the mesh's ball, as in a bowl or a ring: a sphere turned inside out,
+ * from places in the matter around it. */
+static void lamp_in_the_middle(void **state)
+{
+    (void)state;
+    const parian_light_point light = {.position = {0, 0, 0}};
+    parian_mesh mesh;
+    make_blob(8, 0, 1, 1, &mesh);
+    for (uint32_t t = 0; t < mesh.triangle_count; t++) {
+        uint32_t kept = mesh.triangle[t][1];
+        mesh.triangle[t][1] = mesh.triangle[t][2];
+        mesh.triangle[t][2] = kept;
+    }
+    found_list *list = malloc(sizeof *list);
+    assert_non_null(list);
+    for (int e = 0; e < ETA_COUNT; e++) {
+        parian_refractor *refractor = NULL;
+        parian_random random = parian_random_stream(3, (uint64_t)e, 0, 0);
+        size_t paths = 0;
+        assert_int_equal(parian_refractor_create(NULL, &mesh, all_etas[e], &refractor), PARIAN_OK);
+        for (int i = 0; i < 100; i++) {
+            double x[3];
+            random_direction(&random, x);
+            for (int k = 0; k < 3; k++) {
+                x[k] *= 0.51 + 0.002 * i;
+            }
+            list->count = 0;
+            parian_refracted_paths(refractor, x, &light, INFINITY, PARIAN_REFRACTOR_NO_SKIP,
+                                   collect, list);
+            paths +=
+                compare(&mesh, all_etas[e], x, &light, INFINITY, PARIAN_REFRACTOR_NO_SKIP, list);
+        }
+        assert_true(paths > PATHS_LEAST);
+        parian_refractor_destroy(refractor);
+    }
+    free(list);
+    parian_mesh_free(NULL, &mesh);
+}
+
 /* ---- scale and place ---- */
 
 /* A body a thousand times smaller or larger, anywhere, has the same paths. */
@@ -494,6 +533,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(soups_agree_with_the_plain_search),
         cmocka_unit_test(blobs_agree_with_the_plain_search),
+        cmocka_unit_test(lamp_in_the_middle),
         cmocka_unit_test(scale_and_place_do_not_matter),
         cmocka_unit_test(hostile_numbers_give_no_nan),
         cmocka_unit_test(bad_arguments_are_refused),
