@@ -1,7 +1,8 @@
 /* gl_api.h - the OpenGL functions that the renderer uses, as a table that the application's loader
  * fills.
  *
- * All of them are in OpenGL 3.3 core and in OpenGL ES 3.0 alike.
+ * Those that every pass uses are in OpenGL 3.3 core and in OpenGL ES 3.0 alike; the others serve to
+ * keep state that only one of them has.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -9,6 +10,7 @@
 #define PARIAN_GL_API_H
 
 #include <GL/glcorearb.h>
+#include <stdbool.h>
 
 #include "parian/env.h"
 #include "parian/result.h"
@@ -55,6 +57,7 @@
     X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                                                   \
     X(PFNGLGETBOOLEANVPROC, GetBooleanv)                                                           \
     X(PFNGLGETERRORPROC, GetError)                                                                 \
+    X(PFNGLGETFLOATVPROC, GetFloatv)                                                               \
     X(PFNGLGETINTEGERVPROC, GetIntegerv)                                                           \
     X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                                               \
     X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                                         \
@@ -84,14 +87,34 @@
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                                           \
     X(PFNGLVIEWPORTPROC, Viewport)
 
+/* OpenGL 3.3 core alone; OpenGL ES alone; OpenGL 3.3 core and OpenGL ES 3.2. */
+#define PARIAN_GL_FUNCTIONS_CORE(X)                                                                \
+    X(PFNGLCLAMPCOLORPROC, ClampColor)                                                             \
+    X(PFNGLDEPTHRANGEPROC, DepthRange)                                                             \
+    X(PFNGLPOLYGONMODEPROC, PolygonMode)
+#define PARIAN_GL_FUNCTIONS_ES(X) X(PFNGLDEPTHRANGEFPROC, DepthRangef)
+#define PARIAN_GL_FUNCTIONS_INDEXED(X)                                                             \
+    X(PFNGLCOLORMASKIPROC, ColorMaski)                                                             \
+    X(PFNGLDISABLEIPROC, Disablei)                                                                 \
+    X(PFNGLENABLEIPROC, Enablei)                                                                   \
+    X(PFNGLGETBOOLEANI_VPROC, GetBooleani_v)                                                       \
+    X(PFNGLISENABLEDIPROC, IsEnabledi)
+
 typedef struct parian_gl_api {
 #define X(type, name) type name;
     PARIAN_GL_FUNCTIONS(X)
+    PARIAN_GL_FUNCTIONS_CORE(X)
+    PARIAN_GL_FUNCTIONS_ES(X)
+    PARIAN_GL_FUNCTIONS_INDEXED(X)
 #undef X
 } parian_gl_api;
 
 /* Errors: PARIAN_E_UNSUPPORTED names the first function that the loader does not know. */
 parian_result parian_gl_api_load(const parian_env *env, void *(*get_proc_address)(const char *name),
                                  parian_gl_api *api);
+/* The functions of one of the two APIs, and those for each draw buffer. Errors: as above. */
+parian_result parian_gl_api_load_flavour(const parian_env *env,
+                                         void *(*get_proc_address)(const char *name), bool es,
+                                         bool indexed, parian_gl_api *api);
 
 #endif

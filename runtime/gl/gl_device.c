@@ -9,18 +9,6 @@
 
 #include "core/memory.h"
 
-static const GLenum kept_enables[] = {GL_DEPTH_TEST,          GL_BLEND,
-                                      GL_CULL_FACE,           GL_SCISSOR_TEST,
-                                      GL_STENCIL_TEST,        GL_RASTERIZER_DISCARD,
-                                      GL_POLYGON_OFFSET_FILL, GL_FRAMEBUFFER_SRGB};
-/* The last of them is not part of OpenGL ES 3.0. */
-enum { ENABLE_COUNT = 8, ENABLE_COUNT_ES = 7 };
-
-static const GLenum kept_pixel_store[] = {
-    GL_PACK_ALIGNMENT,   GL_PACK_ROW_LENGTH,   GL_PACK_SKIP_ROWS,   GL_PACK_SKIP_PIXELS,
-    GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS};
-enum { PIXEL_STORE_COUNT = 8 };
-
 static bool has_extension(const parian_gl_api *gl, const char *name)
 {
     GLint count = 0;
@@ -48,12 +36,12 @@ static parian_result check_version(gl_device *device, char *name, size_t name_si
     gl->GetIntegerv(GL_MINOR_VERSION, &minor);
     snprintf(name, name_size, "%s, OpenGL%s %d.%d", renderer ? renderer : "unknown",
              device->es ? " ES" : "", major, minor);
-    int least = device->es ? 30 : 33;
-    if (10 * major + minor < least) {
+    device->version = 10 * major + minor;
+    if (device->version < (device->es ? 30 : 33)) {
         return parian_fail(device->env, PARIAN_E_UNSUPPORTED,
                            "found %s, expected OpenGL 3.3 or OpenGL ES 3.0", version);
     }
-    if (device->es && 10 * major + minor < 32 && !has_extension(gl, "GL_EXT_color_buffer_float")) {
+    if (device->es && device->version < 32 && !has_extension(gl, "GL_EXT_color_buffer_float")) {
         return parian_fail(
             device->env, PARIAN_E_UNSUPPORTED,
             "this OpenGL ES cannot draw to floats: GL_EXT_color_buffer_float is missing");
@@ -72,6 +60,10 @@ parian_result gl_device_init(const parian_env *env, void *(*get_proc_address)(co
     parian_result result = parian_gl_api_load(env, get_proc_address, &device->gl);
     if (result == PARIAN_OK) {
         result = check_version(device, name, name_size);
+    }
+    if (result == PARIAN_OK) {
+        result = parian_gl_api_load_flavour(env, get_proc_address, device->es,
+                                            gl_device_has_indexed(device), &device->gl);
     }
     if (result != PARIAN_OK) {
         memset(device, 0, sizeof *device); /* nothing to delete, and nothing to do it with */
@@ -94,97 +86,6 @@ void gl_device_destroy(gl_device *device)
     }
     device->gl.DeleteFramebuffers(1, &device->framebuffer);
     device->gl.DeleteVertexArrays(1, &device->empty_vertex_array);
-}
-
-/* ---- kept state ---- */
-
-static void keep_units(gl_device *device)
-{
-    for (int u = 0; u < GL_UNIT_MAX; u++) {
-        device->gl.ActiveTexture(GL_TEXTURE0 + (GLenum)u);
-        device->gl.GetIntegerv(GL_SAMPLER_BINDING, &device->kept.sampler[u]);
-        device->gl.BindSampler((GLuint)u, 0);
-    }
-}
-
-void gl_device_enter(gl_device *device)
-{
-    const parian_gl_api *gl = &device->gl;
-    gl_kept_state *kept = &device->kept;
-    gl->GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &kept->draw_framebuffer);
-    gl->GetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &kept->read_framebuffer);
-    gl->GetIntegerv(GL_RENDERBUFFER_BINDING, &kept->renderbuffer);
-    gl->GetIntegerv(GL_VIEWPORT, kept->viewport);
-    gl->GetIntegerv(GL_CURRENT_PROGRAM, &kept->program);
-    gl->GetIntegerv(GL_VERTEX_ARRAY_BINDING, &kept->vertex_array);
-    gl->GetIntegerv(GL_ARRAY_BUFFER_BINDING, &kept->array_buffer);
-    gl->GetIntegerv(GL_ACTIVE_TEXTURE, &kept->active_texture);
-    gl->GetIntegerv(GL_DEPTH_FUNC, &kept->depth_func);
-    gl->GetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &kept->pack_buffer);
-    gl->GetIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &kept->unpack_buffer);
-    gl->GetBooleanv(GL_COLOR_WRITEMASK, kept->color_mask);
-    gl->GetBooleanv(GL_DEPTH_WRITEMASK, &kept->depth_mask);
-    for (int i = 0; i < (device->es ? ENABLE_COUNT_ES : ENABLE_COUNT); i++) {
-        kept->enabled[i] = gl->IsEnabled(kept_enables[i]);
-        gl->Disable(kept_enables[i]);
-    }
-    for (int i = 0; i < PIXEL_STORE_COUNT; i++) {
-        gl->GetIntegerv(kept_pixel_store[i], &kept->pixel_store[i]);
-        gl->PixelStorei(kept_pixel_store[i], i % 4 == 0 ? 1 : 0);
-    }
-    keep_units(device);
-    gl->BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-    gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-    gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    gl->DepthMask(GL_TRUE);
-    gl->DepthFunc(GL_LESS);
-}
-
-static void release_units(gl_device *device)
-{
-    for (int u = 0; u < GL_UNIT_MAX; u++) {
-        device->gl.ActiveTexture(GL_TEXTURE0 + (GLenum)u);
-        device->gl.BindTexture(GL_TEXTURE_2D, 0);
-        device->gl.BindTexture(GL_TEXTURE_2D_ARRAY, 0);
-        device->gl.BindSampler((GLuint)u, (GLuint)device->kept.sampler[u]);
-    }
-}
-
-parian_result gl_device_leave(gl_device *device, parian_result result, const char *what)
-{
-    const parian_gl_api *gl = &device->gl;
-    const gl_kept_state *kept = &device->kept;
-    GLenum error = gl->GetError();
-    release_units(device);
-    gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, (GLuint)kept->draw_framebuffer);
-    gl->BindFramebuffer(GL_READ_FRAMEBUFFER, (GLuint)kept->read_framebuffer);
-    gl->BindRenderbuffer(GL_RENDERBUFFER, (GLuint)kept->renderbuffer);
-    gl->Viewport(kept->viewport[0], kept->viewport[1], kept->viewport[2], kept->viewport[3]);
-    gl->UseProgram((GLuint)kept->program);
-    gl->BindVertexArray((GLuint)kept->vertex_array);
-    gl->BindBuffer(GL_ARRAY_BUFFER, (GLuint)kept->array_buffer);
-    gl->BindBuffer(GL_PIXEL_PACK_BUFFER, (GLuint)kept->pack_buffer);
-    gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, (GLuint)kept->unpack_buffer);
-    gl->ActiveTexture((GLenum)kept->active_texture);
-    gl->DepthFunc((GLenum)kept->depth_func);
-    gl->DepthMask(kept->depth_mask);
-    gl->ColorMask(kept->color_mask[0], kept->color_mask[1], kept->color_mask[2],
-                  kept->color_mask[3]);
-    for (int i = 0; i < (device->es ? ENABLE_COUNT_ES : ENABLE_COUNT); i++) {
-        if (kept->enabled[i]) {
-            gl->Enable(kept_enables[i]);
-        } else {
-            gl->Disable(kept_enables[i]);
-        }
-    }
-    for (int i = 0; i < PIXEL_STORE_COUNT; i++) {
-        gl->PixelStorei(kept_pixel_store[i], kept->pixel_store[i]);
-    }
-    if (result == PARIAN_OK && error != GL_NO_ERROR) {
-        parian_result kind = error == GL_OUT_OF_MEMORY ? PARIAN_E_NOMEM : PARIAN_E_DEVICE;
-        return parian_fail(device->env, kind, "OpenGL error 0x%04X while it %s", error, what);
-    }
-    return result;
 }
 
 /* ---- passes ---- */

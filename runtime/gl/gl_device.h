@@ -60,19 +60,28 @@ enum {
     GL_UNIT_MAX = 16
 };
 
-/* What of the application's state our passes change, and put back. */
+/* The application's state that our passes change or depend on, and put back. */
+enum {
+    GL_KEPT_ENABLE_MAX = 24,
+    GL_KEPT_PIXEL_STORE_MAX = 12,
+    GL_KEPT_BUFFER_MAX = 8 /* draw buffers with colour masks and blending of their own */
+};
 typedef struct gl_kept_state {
-    GLint draw_framebuffer, read_framebuffer, renderbuffer, viewport[4], program, vertex_array,
-        array_buffer;
-    GLint active_texture, depth_func, pack_buffer, unpack_buffer, pixel_store[8];
-    GLint sampler[GL_UNIT_MAX];
-    GLboolean color_mask[4], depth_mask, enabled[8];
+    GLint draw_framebuffer, read_framebuffer, renderbuffer, program, vertex_array, array_buffer,
+        pack_buffer, unpack_buffer, active_texture, depth_func, clamp_read;
+    GLint viewport[4], polygon_mode[2], pixel_store[GL_KEPT_PIXEL_STORE_MAX];
+    GLint texture[GL_UNIT_MAX], texture_array[GL_UNIT_MAX], sampler[GL_UNIT_MAX];
+    GLfloat depth_range[2];
+    GLint buffer_count;
+    GLboolean blend[GL_KEPT_BUFFER_MAX], color_mask[GL_KEPT_BUFFER_MAX][4], depth_mask,
+        enabled[GL_KEPT_ENABLE_MAX];
 } gl_kept_state;
 
 typedef struct gl_device {
     const parian_env *env;
     parian_gl_api gl;
     bool es;
+    int version; /* 33 is 3.3 */
     GLint texture_max, layers_max;
     parian_memory memory; /* in use */
     uint64_t memory_budget;
@@ -92,8 +101,16 @@ parian_result gl_device_init(const parian_env *env, void *(*get_proc_address)(co
                              size_t name_size);
 void gl_device_destroy(gl_device *device);
 
-/* Bracket all work in the application's context: state is kept and put back, texture units that
- * were used end up without textures. gl_device_leave turns a GL error into a result. */
+/* Whether each draw buffer has a colour mask and blending of its own. */
+static inline bool gl_device_has_indexed(const gl_device *device)
+{
+    return !device->es || device->version >= 32;
+}
+
+/* gl_kept.c: bracket all work in the application's context. Its state is kept and put back; an
+ * error that was pending before is dropped with a warning. gl_device_leave turns a GL error into a
+ * result.
+ */
 void gl_device_enter(gl_device *device);
 parian_result gl_device_leave(gl_device *device, parian_result result, const char *what);
 
