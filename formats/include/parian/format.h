@@ -17,6 +17,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default) /* what a shared library exports */
+#endif
 
 enum {
     PARIAN_FORMAT_VERSION = 1, /* major: a reader refuses any other */
@@ -143,6 +146,9 @@ parian_result parian_reader_map(const parian_reader *reader, uint32_t index, con
  * and byte offset. */
 parian_result parian_reader_verify(const parian_reader *reader);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

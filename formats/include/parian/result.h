@@ -8,6 +8,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default) /* what a shared library exports */
+#endif
 
 /* One table: name, number, exit status of a tool that ends with it, text. Numbers never change. */
 #define PARIAN_RESULT_TABLE(X)                                                                     \
@@ -34,6 +37,9 @@ const char *parian_result_text(parian_result result);
 /* The exit status of a tool that fails with this result (docs: command-line contract). */
 int parian_result_exit_status(parian_result result);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

@@ -23,6 +23,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default) /* what a shared library exports */
+#endif
 
 /* ---- scene ------------------------------------------------------------------------------------- */
 typedef struct parian_scene parian_scene;
@@ -228,6 +231,9 @@ parian_result parian_renderer_estimate_memory(const parian_env *env, const paria
  * Errors: PARIAN_E_NOMEM, PARIAN_E_UNSUPPORTED, PARIAN_E_DEVICE. */
 parian_result parian_renderer_upload(parian_renderer *renderer, uint64_t max_bytes, uint64_t *bytes_left);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif
