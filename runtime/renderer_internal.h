@@ -60,6 +60,9 @@ typedef struct parian_backend_table {
      * is B at vertices. */
     parian_result (*read_register)(parian_renderer *renderer, uint32_t body, uint32_t index,
                                    float (*value)[3]);
+    /* Set the names of the textures of one body of one instance; NULL where there are none. */
+    parian_result (*hand_out)(parian_renderer *renderer, uint32_t instance, uint32_t body,
+                              parian_gl_textures *textures);
     parian_memory (*memory)(const parian_renderer *renderer);
     /* NULL where nothing is uploaded and no GL memory used: */
     /* Upload about max_bytes; the scene's bytes that are left go to renderer->upload_left. */

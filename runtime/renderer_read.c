@@ -113,3 +113,36 @@ parian_result parian_renderer_read_register(parian_renderer *renderer, uint32_t 
     return result == PARIAN_OK ? renderer->backend->read_register(renderer, body, index, value)
                                : result;
 }
+
+parian_result parian_renderer_get_gl_textures(parian_renderer *renderer, uint32_t instance,
+                                              uint32_t body, parian_gl_textures *textures)
+{
+    if (!renderer || !textures) {
+        return PARIAN_E_ARGUMENT;
+    }
+    if (!renderer->backend->hand_out) {
+        return parian_fail(&renderer->env, PARIAN_E_UNSUPPORTED,
+                           "the C evaluation has no GL textures to hand out");
+    }
+    if (instance >= renderer->instance_count || body >= renderer->scene->data.body_count) {
+        return parian_fail(&renderer->env, PARIAN_E_ARGUMENT,
+                           "textures of body %u of instance %u were asked for, there are %u bodies "
+                           "and %u instances",
+                           body, instance, renderer->scene->data.body_count,
+                           renderer->instance_count);
+    }
+    const parian_placement *at = &renderer->instances[instance];
+    parian_gl_textures made = {.size = renderer->scene->data.bodies[body].atlas_size,
+                               .scale = at->scale,
+                               .eta = renderer->optics[body].eta,
+                               .exit_norm = renderer->optics[body].exit_norm};
+    memcpy(made.model, at->model, sizeof made.model);
+    parian_result result = parian_renderer_relight(renderer);
+    if (result == PARIAN_OK) {
+        result = renderer->backend->hand_out(renderer, instance, body, &made);
+    }
+    if (result == PARIAN_OK) {
+        *textures = made;
+    }
+    return result;
+}

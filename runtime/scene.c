@@ -119,7 +119,15 @@ parian_scene_body parian_scene_get_body(const parian_scene *scene, uint32_t inde
                              .vertex_count = body->vertex_count,
                              .triangle_count = body->triangle_count,
                              .has_local = body->local_form != PARIAN_LOCAL_NONE,
-                             .has_global = body->has_global};
+                             .has_global = body->has_global,
+                             .vertex_position = (const float(*)[3])body->vertex_position,
+                             .triangle = (const uint32_t(*)[3])body->triangle,
+                             .corner_normal = (const float(*)[3][3])body->corner_normal,
+                             .corner_uv = (const float(*)[3][2])body->corner_uv,
+                             .triangle_chart = body->triangle_chart,
+                             .texel_index = body->texel_index,
+                             .texel_albedo = (const float(*)[3])body->texel_albedo,
+                             .texel_normal_map = (const float(*)[3])body->texel_normal_map};
     for (int c = 0; c < 3; c++) {
         out.sigma_s_prime[c] = body->medium.sigma_s_prime[c];
         out.sigma_a[c] = body->medium.sigma_a[c];

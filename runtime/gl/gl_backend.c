@@ -344,6 +344,29 @@ static parian_result gl_read_register(parian_renderer *renderer, uint32_t body, 
     return read_picked(&state->device, &state->lit[body].registers[index], NULL, size, value);
 }
 
+static parian_result gl_hand_out(parian_renderer *renderer, uint32_t instance, uint32_t body,
+                                 parian_gl_textures *textures)
+{
+    gl_state *state = renderer->state;
+    gl_lit *lit = &state->lit[instance * renderer->scene->data.body_count + body];
+    parian_result result = PARIAN_OK;
+    if (!lit->radiosity.name) {
+        gl_device_enter(&state->device);
+        result = gl_lit_add_radiosity(&state->device, lit);
+        if (result == PARIAN_OK) {
+            gl_gutter_run_one(renderer, instance, body);
+        }
+        result = gl_device_leave(&state->device, result, "handed out textures");
+    }
+    if (result == PARIAN_OK) {
+        textures->irradiance = lit->shown_irradiance.name;
+        textures->radiosity = lit->radiosity.name;
+        textures->albedo = state->body[body].albedo.name;
+        textures->normal_map = state->body[body].normal_map.name;
+    }
+    return result;
+}
+
 static parian_memory gl_memory(const parian_renderer *renderer)
 {
     return ((const gl_state *)renderer->state)->device.memory;
@@ -359,6 +382,7 @@ const parian_backend_table parian_gl_backend = {
     .read_texels = gl_read_texels,
     .set_values = gl_set_values,
     .read_register = gl_read_register,
+    .hand_out = gl_hand_out,
     .memory = gl_memory,
     .upload = gl_upload_scene,
     .count_scene = gl_count_scene,

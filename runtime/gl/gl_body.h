@@ -41,6 +41,7 @@ typedef struct gl_body {
 typedef struct gl_lit {
     gl_texture irradiance, local, global;
     gl_texture shown_irradiance, shown_local, shown_global; /* with gutters */
+    gl_texture radiosity; /* local and global, with gutters; absent until it is handed out */
     gl_texture registers[GL_REGISTER_MAX];
 } gl_lit;
 
@@ -72,6 +73,8 @@ void gl_body_destroy(gl_device *device, gl_body *made);
 /* The textures of an instance, empty; and their bytes. */
 parian_result gl_lit_create(gl_device *device, const parian_body *body, gl_lit *made);
 void gl_lit_count(const parian_body *body, uint32_t instance_count, parian_memory *memory);
+/* Errors: those of gl_texture_allocate. */
+parian_result gl_lit_add_radiosity(gl_device *device, gl_lit *made);
 void gl_lit_destroy(gl_device *device, gl_lit *made);
 
 void gl_mesh_plan_body(gl_upload_list *list, const parian_body *body, gl_mesh *mesh);

@@ -100,8 +100,8 @@ void gl_pass_use(gl_device *device, gl_program_id program)
 void gl_pass_begin(gl_device *device, gl_program_id program, const gl_texture *const *target,
                    int count)
 {
-    static const GLenum buffers[3] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
-                                      GL_COLOR_ATTACHMENT2};
+    static const GLenum buffers[GL_TARGET_MAX] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
+                                                  GL_COLOR_ATTACHMENT2, GL_COLOR_ATTACHMENT3};
     const parian_gl_api *gl = &device->gl;
     gl_pass_use(device, program);
     if (count == 0) {
@@ -109,7 +109,7 @@ void gl_pass_begin(gl_device *device, gl_program_id program, const gl_texture *c
     }
     gl->BindFramebuffer(GL_FRAMEBUFFER, device->framebuffer);
     gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, 0, 0);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < GL_TARGET_MAX; i++) {
         gl->FramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D,
                                  i < count ? target[i]->name : 0, 0);
     }

@@ -57,7 +57,8 @@ enum {
     GL_ARRAY_WIDTH = 2048,
     GL_ARRAY_HEIGHT = 512,
     GL_ARRAY_LAYERS_MAX = 4096, /* shaders count elements with 32 bits */
-    GL_UNIT_MAX = 16
+    GL_UNIT_MAX = 16,
+    GL_TARGET_MAX = 4 /* which both APIs promise */
 };
 
 /* The application's state that our passes change or depend on, and put back. */

@@ -83,12 +83,25 @@ static void drop_errors(gl_device *device)
     }
 }
 
+/* A program that was deleted while it is current goes when another takes its place. */
+static void keep_program(const parian_gl_api *gl, gl_kept_state *kept)
+{
+    GLint deleted = GL_FALSE;
+    gl->GetIntegerv(GL_CURRENT_PROGRAM, &kept->program);
+    if (kept->program) {
+        gl->GetProgramiv((GLuint)kept->program, GL_DELETE_STATUS, &deleted);
+    }
+    if (deleted) {
+        kept->program = 0;
+    }
+}
+
 static void keep_bindings(const parian_gl_api *gl, gl_kept_state *kept)
 {
+    keep_program(gl, kept);
     gl->GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &kept->draw_framebuffer);
     gl->GetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &kept->read_framebuffer);
     gl->GetIntegerv(GL_RENDERBUFFER_BINDING, &kept->renderbuffer);
-    gl->GetIntegerv(GL_CURRENT_PROGRAM, &kept->program);
     gl->GetIntegerv(GL_VERTEX_ARRAY_BINDING, &kept->vertex_array);
     gl->GetIntegerv(GL_ARRAY_BUFFER_BINDING, &kept->array_buffer);
     gl->GetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &kept->pack_buffer);

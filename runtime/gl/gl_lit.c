@@ -32,8 +32,21 @@ void gl_lit_count(const parian_body *body, uint32_t instance_count, parian_memor
     memory->total += instance_count * size;
 }
 
+parian_result gl_lit_add_radiosity(gl_device *device, gl_lit *made)
+{
+    gl_texture wanted =
+        gl_texture_describe(GL_FORMAT_RGBA32F, made->local.width, made->local.height);
+    device->part = PARIAN_MEMORY_INSTANCES;
+    parian_result result = gl_texture_allocate(device, &wanted);
+    if (result == PARIAN_OK) {
+        made->radiosity = wanted;
+    }
+    return result;
+}
+
 void gl_lit_destroy(gl_device *device, gl_lit *made)
 {
+    gl_texture_destroy(device, &made->radiosity);
     gl_texture *atlases[6] = {&made->irradiance,       &made->local,       &made->global,
                               &made->shown_irradiance, &made->shown_local, &made->shown_global};
     for (int i = 0; i < 6; i++) {

@@ -48,6 +48,7 @@ void gl_restrict_run(parian_renderer *renderer);
 void gl_product_run(parian_renderer *renderer);
 void gl_filter_run(parian_renderer *renderer);
 void gl_gutter_run(parian_renderer *renderer);
+void gl_gutter_run_one(parian_renderer *renderer, uint32_t instance, uint32_t body);
 
 /* gl_picture.c. Counted for a context whose textures have at least 16384 texels a side. */
 void gl_picture_count(uint32_t width, uint32_t height, parian_memory *memory);

@@ -14,15 +14,19 @@ typedef struct pass_body {
     gl_lit *lit;
 } pass_body;
 
-static void run_all(parian_renderer *renderer, void (*run)(parian_renderer *, const pass_body *))
+static pass_body find_body(parian_renderer *renderer, uint32_t instance, uint32_t b)
 {
     gl_state *state = renderer->state;
-    const uint32_t count = renderer->scene->data.body_count;
+    const parian_scene_data *data = &renderer->scene->data;
+    return (pass_body){&renderer->instances[instance], &renderer->optics[b], &data->bodies[b],
+                       &state->body[b], &state->lit[instance * data->body_count + b]};
+}
+
+static void run_all(parian_renderer *renderer, void (*run)(parian_renderer *, const pass_body *))
+{
     for (uint32_t i = 0; i < renderer->instance_count; i++) {
-        for (uint32_t b = 0; b < count; b++) {
-            const pass_body one = {&renderer->instances[i], &renderer->optics[b],
-                                   &renderer->scene->data.bodies[b], &state->body[b],
-                                   &state->lit[i * count + b]};
+        for (uint32_t b = 0; b < renderer->scene->data.body_count; b++) {
+            const pass_body one = find_body(renderer, i, b);
             run(renderer, &one);
         }
     }
@@ -148,8 +152,9 @@ static void show_body(parian_renderer *renderer, const pass_body *one)
 {
     gl_device *device = &((gl_state *)renderer->state)->device;
     gl_lit *lit = one->lit;
-    const gl_texture *targets[3] = {&lit->shown_irradiance, &lit->shown_local, &lit->shown_global};
-    gl_pass_begin(device, GL_PROGRAM_GUTTER, targets, 3);
+    const gl_texture *targets[4] = {&lit->shown_irradiance, &lit->shown_local, &lit->shown_global,
+                                    &lit->radiosity};
+    gl_pass_begin(device, GL_PROGRAM_GUTTER, targets, lit->radiosity.name ? 4 : 3);
     gl_pass_texture(device, "u_info", &one->body->info);
     gl_pass_texture(device, "u_source", &one->body->gutter_source);
     gl_pass_texture(device, "u_weight", &one->body->gutter_weight);
@@ -163,4 +168,10 @@ static void show_body(parian_renderer *renderer, const pass_body *one)
 void gl_gutter_run(parian_renderer *renderer)
 {
     run_all(renderer, show_body);
+}
+
+void gl_gutter_run_one(parian_renderer *renderer, uint32_t instance, uint32_t body)
+{
+    const pass_body one = find_body(renderer, instance, body);
+    show_body(renderer, &one);
 }

@@ -11,6 +11,7 @@ uniform int u_atlas_size;
 layout(location = 0) out vec4 o_irradiance;
 layout(location = 1) out vec4 o_local;
 layout(location = 2) out vec4 o_global;
+layout(location = 3) out vec4 o_radiosity; // their sum, where a host wants it
 
 void main()
 {
@@ -36,4 +37,5 @@ void main()
         o_local.a = 1.0;
         o_global.a = 1.0;
     }
+    o_radiosity = vec4(o_local.rgb + o_global.rgb, o_global.a);
 }

@@ -4,6 +4,19 @@
  *   parian_scene    an asset in memory; plain data, may serve many renderers and threads
  *   parian_renderer one scene in one GL context (or none: the C evaluation), with lights and settings
  *
+ * What a renderer does to its GL context: every call puts back what it found, and works whatever it finds: bindings
+ * of framebuffers, renderbuffer, program, vertex array, array and pixel buffers, of 2-D and array textures and samplers
+ * of units 0 to 15, the active unit; viewport, depth range, function and mask, colour masks and blending of draw
+ * buffers 0 to 7; pixel storage; culling, scissor, stencil and depth test, discard, polygon offset, dither, sample
+ * coverage and mask, and in OpenGL sRGB, depth clamp, logic op, polygon mode and smoothing, primitive restart, clip
+ * distances and clamping of reads. Nothing else is changed but viewports and scissor tests beyond the first of a
+ * viewport array, which become like the first. The application must not have transform feedback or conditional
+ * rendering active in a call, and a query that is active counts what we draw. A GL error that was pending is dropped
+ * with a warning; a current program that was deleted is replaced by none. Objects are created and deleted by calls that create, upload, set, resize or destroy.
+ *
+ * Any number of scenes and renderers may live in a process, in a context, and in several contexts at once; the
+ * context of a renderer is current in every call on it, and calls on one renderer do not overlap. There are no globals.
+ *
  * Only what changed is recomputed: lights or instances -> E, B and picture; camera or settings -> picture alone;
  * exposure -> tone curve alone; what is set to what it was: nothing.
  *
@@ -53,6 +66,17 @@ typedef struct parian_scene_body {
     uint32_t texel_count, vertex_count, triangle_count;
     uint64_t factor_count;             /* throughput factors of the global part */
     bool has_local, has_global;
+
+    /* What a host needs to draw the body itself; all live with the scene. */
+    const float (*vertex_position)[3];  /* [vertex_count] metres */
+    const uint32_t (*triangle)[3];      /* [triangle_count] counterclockwise from outside */
+    const float (*corner_normal)[3][3]; /* [triangle_count][corner] unit */
+    const float (*corner_uv)[3][2];     /* [triangle_count][corner] place in the atlas in texels: divide by atlas_size
+                                         * for [0, 1]; row 0 is the first of every texture that is handed out */
+    const uint32_t *triangle_chart;     /* [triangle_count] */
+    const uint32_t *texel_index;        /* [texel_count] row * atlas_size + column of each owned texel */
+    const float (*texel_albedo)[3];     /* [texel_count] surface texture T_p, linear; NULL: none */
+    const float (*texel_normal_map)[3]; /* [texel_count] unit normals in the space of the vertices; NULL: none */
 } parian_scene_body;
 /* Zeroed when there is no such body. */
 parian_scene_body parian_scene_get_body(const parian_scene *scene, uint32_t index);
@@ -173,6 +197,42 @@ typedef struct parian_texel_arrays {
     float (*radiosity_global)[3];
 } parian_texel_arrays;
 parian_result parian_renderer_read_texels(parian_renderer *renderer, const parian_texel_arrays *arrays);
+
+/* ---- textures for a host that shades the bodies itself ------------------------------------------- */
+
+/* GL textures of one body of one instance: GL_TEXTURE_2D, GL_RGBA32F, size x size, nearest look-up, one level.
+ * Alpha is 1 at owned texels and gutters, where there is a value; elsewhere all is 0, so that rgb / a of a bilinear
+ * look-up is right up to the edge of every chart. Floats are filtered by the hardware in OpenGL, and with
+ * GL_OES_texture_float_linear in OpenGL ES: bind a sampler object of yours with GL_LINEAR; otherwise filter by hand
+ * with texelFetch. Do not change the textures or their parameters, nor delete them.
+ *
+ *   #version 330 core                     // of a host: corner_uv / atlas_size in, radiance out
+ *   uniform sampler2D u_radiosity, u_albedo;      // u_albedo where there is one
+ *   uniform float u_eta, u_exit_norm;
+ *   vec3 look_up(sampler2D map, vec2 uv) { vec4 v = texture(map, uv); return v.rgb / max(v.a, 1e-6); }
+ *   ...
+ *   vec3 radiance = transmit(dot(n, view), u_eta) * look_up(u_radiosity, uv) * look_up(u_albedo, uv)
+ *                   / (3.14159265 * u_exit_norm);
+ *
+ * with transmit the unpolarised Fresnel transmittance from outside. This is what parian_renderer_draw shows without
+ * specular lobe, normal map, exposure and tone curve. */
+typedef struct parian_gl_textures {
+    uint32_t irradiance; /* E: transmitted, cosine and Fresnel applied, W m^-2 */
+    uint32_t radiosity;  /* B: scattered, before the surface texture, W m^-2 */
+    uint32_t albedo;     /* T_p, linear; 0: the body has none */
+    uint32_t normal_map; /* unit normals in the space of the vertices; 0: the body has none */
+    uint32_t size;       /* side of all of them, texels */
+    float model[16], scale; /* where the instance stands, column-major */
+    float eta, exit_norm;   /* relative index; C of L = F_t B T_p / (pi C) */
+} parian_gl_textures;
+
+/* Relights if needed. E and B change in place whenever a later call relights (parian_renderer_relight, draw,
+ * read_texels): relight once a frame, before your own passes. Names stay valid until other instances are set or the
+ * renderer is destroyed; the first hand-out of a body of an instance allocates its B (16 bytes a texel of the atlas).
+ * Other contexts may use the names where they share objects with this one, after a glFinish or a fence.
+ * Errors: PARIAN_E_ARGUMENT, PARIAN_E_UNSUPPORTED (C evaluation), PARIAN_E_NOMEM, PARIAN_E_DEVICE. */
+parian_result parian_renderer_get_gl_textures(parian_renderer *renderer, uint32_t instance, uint32_t body,
+                                              parian_gl_textures *textures);
 
 /* Time of each pass in the last relight and draw: milliseconds until the work was finished (GL: with a
  * glFinish around each pass when timing is on, which slows the whole). */
