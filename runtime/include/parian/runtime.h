@@ -69,18 +69,20 @@ typedef struct parian_scene_body {
 parian_scene_body parian_scene_get_body(const parian_scene *scene, uint32_t index);
 
 /* ---- renderer ---------------------------------------------------------------------------------- */
-/* What a renderer does to its GL context: every call puts back what it found, and works whatever it finds: bindings
- * of framebuffers, renderbuffer, program, vertex array, array and pixel buffers, of 2-D and array textures and samplers
- * of units 0 to 15, the active unit; viewport, depth range, function and mask, colour masks and blending of draw
- * buffers 0 to 7; pixel storage; culling, scissor, stencil and depth test, discard, polygon offset, dither, sample
- * coverage and mask, and in OpenGL sRGB, depth clamp, logic op, polygon mode and smoothing, primitive restart, clip
- * distances and clamping of reads. Nothing else is changed but viewports and scissor tests beyond the first of a
- * viewport array, which become like the first. The application must not have transform feedback or conditional
- * rendering active in a call, and a query that is active counts what we draw. A GL error that was pending is dropped
- * with a warning; a current program that was deleted is replaced by none. Objects are created and deleted by calls that create, upload, set, resize or destroy.
+/* What a renderer does to its GL context: every call puts back what it found, and works whatever it finds:
+ * bindings of framebuffers, renderbuffer, program, vertex array, array and pixel buffers, of 2-D and array
+ * textures and samplers of units 0 to 15, the active unit; viewport, depth range, function and mask, colour masks
+ * and blending of draw buffers 0 to 7; pixel storage; culling, scissor, stencil and depth test, discard, polygon
+ * offset, dither, sample coverage and mask, and in OpenGL sRGB, depth clamp, logic op, polygon mode and smoothing,
+ * primitive restart, clip distances and clamping of reads. Nothing else is changed but viewports and scissor tests
+ * beyond the first of a viewport array, which become like the first. The application must not have transform
+ * feedback or conditional rendering active in a call, and a query that is active counts what we draw. A GL error
+ * that was pending is dropped with a warning; a current program that was deleted is replaced by none. Objects are
+ * created and deleted by calls that create, upload, set, resize or destroy.
  *
  * Any number of scenes and renderers may live in a process, in a context, and in several contexts at once; the
- * context of a renderer is current in every call on it, and calls on one renderer do not overlap. There are no globals. */
+ * context of a renderer is current in every call on it, and calls on one renderer do not overlap. There are no
+ * globals. */
 typedef struct parian_renderer parian_renderer;
 
 typedef enum parian_backend { PARIAN_BACKEND_GL = 0, PARIAN_BACKEND_CPU = 1 } parian_backend;
