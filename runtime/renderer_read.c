@@ -37,6 +37,9 @@ static void copy_surface(const parian_placement *at, const parian_body *body,
         arrays->place[first + t][0] = body->texel_index[t] % body->atlas_size;
         arrays->place[first + t][1] = body->texel_index[t] / body->atlas_size;
     }
+    for (size_t t = 0; arrays->chart && t < body->texel_count; t++) {
+        arrays->chart[first + t] = body->triangle_chart[body->texel_triangle[t]];
+    }
 }
 
 /* local, global and their sum, each where asked for. */

@@ -5,13 +5,17 @@
 #include "view_app.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "core/memory.h"
+#include "view_picture.h"
 
 /* Radiance of the default background for each W/m^2 of light; a white surface has 0.32. */
 static const double BACKGROUND_SHARE = 0.005, BACKGROUND_MAX = 1e6;
 static const double WHITE = 2.2, EXPOSURE_MAX = 60;
 
+/* ---- first choices -----------------------------------------------------------------------------
+ */
 /* Unless told: as much as makes a white surface in full light come out as WHITE before the tone
  * curve. It depends on the lights alone, so pictures of the same lights compare and nothing pumps
  * while the camera moves. */
@@ -40,55 +44,110 @@ static void choose_background(parian_view_app *app)
     }
 }
 
-parian_result parian_view_app_open(parian_view_app *app)
+static parian_result choose_lights(parian_view_app *app)
+{
+    if (app->lights_given) {
+        return PARIAN_OK;
+    }
+    parian_light_set_free(app->env, &app->lights);
+    memset(app->light_off, 0, sizeof app->light_off);
+    return parian_view_lights_default(app->env, &app->info, &app->extent, &app->lights);
+}
+
+parian_result parian_view_app_prepare(parian_view_app *app)
 {
     const parian_view_options *o = app->options;
-    const double aspect = (double)o->width / o->height;
     parian_result result = parian_view_camera_check(app->env, o->camera);
     if (result == PARIAN_OK) {
         result = parian_view_lights_read(app->env, o, &app->lights);
     }
-    if (result == PARIAN_OK) {
-        result = parian_scene_open(app->env, o->asset, &app->scene);
+    app->lights_given = app->lights.count > 0;
+    if (result == PARIAN_OK && o->reference) {
+        result = parian_view_reference_read(app->env, o->reference, &app->reference);
     }
-    if (result != PARIAN_OK) {
-        return result;
-    }
-    app->info = parian_scene_get_info(app->scene);
+    app->display = o->displays[0];
+    app->aspect = (double)o->width / o->height;
+    app->error_scale = o->error_scale;
+    app->error = -1;
+    app->settings =
+        (parian_settings){.no_specular = o->no_specular, .roughness = (float)o->roughness};
+    return result;
+}
+
+/* ---- adopting a scene --------------------------------------------------------------------------
+ */
+static void use_scene(parian_view_app *app, parian_scene *scene)
+{
+    app->scene = scene;
+    app->info = parian_scene_get_info(scene);
     app->extent = parian_view_extent_of(&app->info);
-    if (app->lights.count == 0) {
-        result = parian_view_lights_default(app->env, &app->info, &app->extent, &app->lights);
-    }
+    app->error_stale = true;
+    parian_view_reference_forget(app->env, &app->reference);
+}
+
+static parian_result make_view(parian_view_app *app)
+{
+    const parian_view_options *o = app->options;
+    parian_result result = choose_lights(app);
     if (result == PARIAN_OK) {
-        result = parian_view_camera_make(app->env, o->camera, &app->extent, aspect, &app->camera);
+        result =
+            parian_view_camera_make(app->env, o->camera, &app->extent, app->aspect, &app->camera);
     }
     choose_exposure(app);
-    app->settings = (parian_settings){.view = (parian_view_mode)o->view,
-                                      .no_specular = o->no_specular,
-                                      .roughness = (float)o->roughness};
     choose_background(app);
+    if (result == PARIAN_OK) {
+        result = parian_view_app_send_lights(app);
+    }
+    if (result == PARIAN_OK && parian_view_camera_is_open(o->camera)) {
+        result = parian_view_app_frame(app, app->aspect);
+    }
     return result;
 }
 
-parian_result parian_view_app_start(parian_view_app *app,
-                                    void *(*get_proc_address)(const char *name))
+parian_result parian_view_app_adopt(parian_view_app *app, parian_scene *scene, bool keep)
 {
-    const parian_renderer_desc desc = {.backend = get_proc_address ? PARIAN_BACKEND_GL
-                                                                   : PARIAN_BACKEND_CPU,
-                                       .get_proc_address = get_proc_address};
-    parian_result result = parian_renderer_create(app->env, app->scene, &desc, &app->renderer);
-    if (result == PARIAN_OK) {
-        result = parian_renderer_set_settings(app->renderer, &app->settings);
+    const parian_renderer_desc desc = {.backend = app->get_proc_address ? PARIAN_BACKEND_GL
+                                                                        : PARIAN_BACKEND_CPU,
+                                       .get_proc_address = app->get_proc_address};
+    parian_scene *before = app->scene;
+    parian_renderer *made, *old = app->renderer;
+    parian_result result = parian_renderer_create(app->env, scene, &desc, &made);
+    if (result != PARIAN_OK) {
+        parian_scene_close(scene);
+        return result;
     }
-    if (result == PARIAN_OK) {
-        result = parian_renderer_set_lights(app->renderer, app->lights.light, app->lights.count);
+    use_scene(app, scene);
+    app->renderer = made;
+    result = keep && before ? parian_view_app_send_lights(app) : make_view(app);
+    if (result != PARIAN_OK && before) {
+        parian_renderer_destroy(made);
+        parian_scene_close(scene);
+        use_scene(app, before);
+        app->renderer = old;
+        return result;
     }
-    if (result == PARIAN_OK && parian_view_camera_is_open(app->options->camera)) {
-        result = parian_view_app_frame(app, (double)app->options->width / app->options->height);
-    }
+    parian_renderer_destroy(old);
+    parian_scene_close(before);
     return result;
 }
 
+void parian_view_app_stop(parian_view_app *app)
+{
+    parian_renderer_destroy(app->renderer);
+    app->renderer = NULL;
+}
+
+void parian_view_app_close(parian_view_app *app)
+{
+    parian_view_picture_free(app);
+    parian_view_reference_free(app->env, &app->reference);
+    parian_light_set_free(app->env, &app->lights);
+    parian_scene_close(app->scene);
+    app->scene = NULL;
+}
+
+/* ---- lights and camera -------------------------------------------------------------------------
+ */
 parian_result parian_view_app_frame(parian_view_app *app, double aspect)
 {
     parian_texel_arrays arrays = {.position = NULL};
@@ -104,19 +163,48 @@ parian_result parian_view_app_frame(parian_view_app *app, double aspect)
     return result;
 }
 
-void parian_view_app_stop(parian_view_app *app)
+parian_result parian_view_app_send_lights(parian_view_app *app)
 {
-    parian_renderer_destroy(app->renderer);
-    app->renderer = NULL;
+    parian_light *on;
+    size_t count = 0;
+    if (!PARIAN_NEW(app->env, on, app->lights.count)) {
+        return parian_fail(app->env, PARIAN_E_NOMEM, "no memory for %zu lights", app->lights.count);
+    }
+    for (size_t i = 0; i < app->lights.count; i++) {
+        if (!app->light_off[i]) {
+            on[count++] = app->lights.light[i];
+        }
+    }
+    parian_result result = parian_renderer_set_lights(app->renderer, on, count);
+    parian_free(app->env, on);
+    app->error_stale = true;
+    return result;
 }
 
-void parian_view_app_close(parian_view_app *app)
+parian_result parian_view_app_relight(parian_view_app *app)
 {
+    parian_result result = parian_view_app_send_lights(app);
+    parian_renderer_invalidate(app->renderer); /* the same lights are timed again and again */
+    return result == PARIAN_OK ? parian_renderer_relight(app->renderer) : result;
+}
+
+parian_result parian_view_app_read_lights(parian_view_app *app, const char *path)
+{
+    parian_light_set set = {NULL, 0};
+    parian_result result = parian_lights_read_file(app->env, path, &set);
+    if (result != PARIAN_OK) {
+        parian_light_set_free(app->env, &set);
+        return result;
+    }
     parian_light_set_free(app->env, &app->lights);
-    parian_scene_close(app->scene);
-    app->scene = NULL;
+    memset(app->light_off, 0, sizeof app->light_off);
+    app->lights = set;
+    app->lights_given = true;
+    return PARIAN_OK;
 }
 
+/* ---- drawing -----------------------------------------------------------------------------------
+ */
 parian_result parian_view_app_draw(parian_view_app *app, uint32_t width, uint32_t height,
                                    uint32_t framebuffer)
 {
@@ -128,13 +216,23 @@ parian_result parian_view_app_draw(parian_view_app *app, uint32_t width, uint32_
         .exposure_auto = app->exposure_auto,
         .exposure_ev = app->exposure_ev,
         .framebuffer = framebuffer};
-    return parian_renderer_draw(app->renderer, &desc);
-}
-
-parian_result parian_view_app_relight(parian_view_app *app)
-{
-    parian_result result =
-        parian_renderer_set_lights(app->renderer, app->lights.light, app->lights.count);
-    parian_renderer_invalidate(app->renderer); /* the same lights are timed again and again */
-    return result == PARIAN_OK ? parian_renderer_relight(app->renderer) : result;
+    const bool picture_error = app->display == PARIAN_DISPLAY_ERROR && app->reference.pixel != NULL;
+    app->settings.view =
+        picture_error ? PARIAN_VIEW_COMBINED : parian_view_display_mode(app->display);
+    app->picture.width = app->picture.height = 0;
+    parian_result result = PARIAN_OK;
+    if (parian_view_display_is_atlas(app->display)) {
+        return parian_view_picture_atlas(app, width, height);
+    }
+    if (app->display == PARIAN_DISPLAY_ERROR && !picture_error) {
+        result = parian_view_picture_paint_error(app);
+    }
+    if (result == PARIAN_OK) {
+        result = parian_renderer_set_settings(app->renderer, &app->settings);
+    }
+    if (result == PARIAN_OK) {
+        result = parian_renderer_draw(app->renderer, &desc);
+    }
+    return result == PARIAN_OK && picture_error ? parian_view_picture_compare(app, width, height)
+                                                : result;
 }

@@ -10,6 +10,15 @@
 #include "view_camera.h"
 #include "view_lights.h"
 #include "view_options.h"
+#include "view_reference.h"
+
+/* A picture that the player made itself: atlases, errors of pictures. [height * width], rows from
+ * top to bottom. */
+typedef struct parian_view_picture {
+    float (*radiance)[4];
+    uint8_t (*srgb)[4];
+    uint32_t width, height; /* 0: the last picture is the renderer's */
+} parian_view_picture;
 
 typedef struct parian_view_app {
     const parian_env *env;
@@ -18,30 +27,45 @@ typedef struct parian_view_app {
     parian_scene_info info;
     parian_view_extent extent;
     parian_light_set lights;
+    bool lights_given;                 /* by hand: not those of the asset */
+    bool light_off[PARIAN_LIGHTS_MAX]; /* switched off for the time being */
     parian_view_camera camera;
+    double aspect; /* width over height of the picture, for the first framing */
     parian_renderer *renderer;
-    parian_settings settings;
+    void *(*get_proc_address)(const char *name); /* NULL: the C evaluation */
+    parian_settings settings;                    /* the view comes from the display */
+    parian_view_display display;
     bool exposure_auto;
     float exposure_ev;
+    parian_view_reference reference;
+    double error_scale, error; /* of the error view: colours over this; relative L2, -1 unknown */
+    bool error_stale;          /* B or the scale changed since the error was painted */
+    parian_view_picture picture;
 } parian_view_app;
 
-/* Read lights, asset and camera. app->env and app->options are set; close in every case. */
-parian_result parian_view_app_open(parian_view_app *app);
-/* Make the renderer in the current context (NULL: the C evaluation), with lights and settings, and
- * frame the bodies unless --camera says from how far to look. */
-parian_result parian_view_app_start(parian_view_app *app,
-                                    void *(*get_proc_address)(const char *name));
-/* Free the renderer, while its context is current. */
+/* Read lights, camera file and reference. app->env and app->options are set; close in every case.
+ */
+parian_result parian_view_app_prepare(parian_view_app *app);
+/* Take over an opened scene (which is the app's from then on, also on failure: the one before is
+ * then kept): make its renderer, and first lights, camera and exposure. keep: those stay. */
+parian_result parian_view_app_adopt(parian_view_app *app, parian_scene *scene, bool keep);
+/* Free what belongs to a context, while it is current. */
 void parian_view_app_stop(parian_view_app *app);
 void parian_view_app_close(parian_view_app *app);
 
-/* Draw to a framebuffer ((uint32_t)-1: none) of width x height pixels. */
+/* Draw the display to a framebuffer ((uint32_t)-1: none) of width x height pixels. Afterwards
+ * app->picture is the picture where its width is not 0: the framebuffer was then left alone. */
 parian_result parian_view_app_draw(parian_view_app *app, uint32_t width, uint32_t height,
                                    uint32_t framebuffer);
 /* Fit the camera to the bodies' surface, from the direction it looks in now. */
 parian_result parian_view_app_frame(parian_view_app *app, double aspect);
+/* Give the renderer the lights that are on. */
+parian_result parian_view_app_send_lights(parian_view_app *app);
 /* Force a full relight, and do it. */
 parian_result parian_view_app_relight(parian_view_app *app);
+
+/* Replace the lights by those of a lights file; the old ones stay on failure. */
+parian_result parian_view_app_read_lights(parian_view_app *app, const char *path);
 
 /* Write the picture of the last draw; the ending of the path says how. */
 parian_result parian_view_write_image(parian_view_app *app, const char *path, uint32_t width,

@@ -204,8 +204,8 @@ static parian_result read_vector(const parian_env *env, const char *path, const 
     return PARIAN_OK;
 }
 
-static parian_result read_members(const parian_env *env, const char *path, const cJSON *root,
-                                  parian_view_camera *camera)
+parian_result parian_view_camera_read_members(const parian_env *env, const char *path,
+                                              const cJSON *root, parian_view_camera *camera)
 {
     double between[3];
     const cJSON *fov = cJSON_GetObjectItemCaseSensitive(root, "fov_deg");
@@ -223,7 +223,7 @@ static parian_result read_members(const parian_env *env, const char *path, const
         return parian_fail(env, PARIAN_E_FORMAT, "%s: 'fov_deg' is not a number of 0.1 to 170",
                            path);
     }
-    camera->fov_deg = fov ? fov->valuedouble : DEFAULT_FOV;
+    camera->fov_deg = fov ? fov->valuedouble : camera->fov_deg;
     vector_add_scaled(camera->eye, -1, camera->target, between);
     if (!(vector_length(between) > 0) || !(vector_length(camera->up) > 0)) {
         return parian_fail(env, PARIAN_E_FORMAT, "%s: 'eye' is at 'target', or 'up' has no length",
@@ -243,7 +243,7 @@ static parian_result read_camera_file(const parian_env *env, const char *path,
     }
     cJSON *root = memchr(data, 0, size) ? NULL : cJSON_ParseWithOpts((const char *)data, NULL, 1);
     result = cJSON_IsObject(root)
-                 ? read_members(env, path, root, camera)
+                 ? parian_view_camera_read_members(env, path, root, camera)
                  : parian_fail(env, PARIAN_E_FORMAT, "%s: not a JSON object", path);
     cJSON_Delete(root);
     parian_free(env, data);

@@ -36,6 +36,12 @@ bool parian_view_camera_is_open(const char *text);
  * depth. */
 void parian_view_camera_fit(parian_view_camera *camera, const float (*point)[3], size_t count,
                             const double depth_centre[3], double aspect);
+/* eye (required), target, up and fov_deg of a JSON object (a cJSON *); `where` begins the message.
+ * What is left out stays. Errors: PARIAN_E_FORMAT. */
+struct cJSON;
+parian_result parian_view_camera_read_members(const parian_env *env, const char *where,
+                                              const struct cJSON *object,
+                                              parian_view_camera *camera);
 /* What can be said about --camera before the asset is read: PARIAN_E_ARGUMENT for a bad orbit. */
 parian_result parian_view_camera_check(const parian_env *env, const char *text);
 

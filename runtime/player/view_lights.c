@@ -4,11 +4,15 @@
  */
 #include "view_lights.h"
 
+#include <string.h>
+
+#include "core/memory.h"
 #include "view_vector.h"
 
 static const double PI = 3.14159265358979323846;
 static const double KEY_IRRADIANCE = 3, BACK_IRRADIANCE = 2; /* W/m^2 at the centre of the bodies */
 static const double LIGHT_DISTANCE = 2.5;                    /* bounding radii */
+static const double SHOWN_DISTANCE = 1.3; /* of lights without a place, bounding radii */
 
 parian_result parian_view_lights_read(const parian_env *env, const parian_view_options *options,
                                       parian_light_set *set)
@@ -128,4 +132,77 @@ void parian_view_light_turn(parian_light *light, const double centre[3], const d
     turn_vector(light->axis_u, axis, angle);
     turn_vector(light->axis_v, axis, angle);
     light->rotation_deg += (float)(angle * 180 / PI * axis[1]);
+}
+
+/* ---- editing -----------------------------------------------------------------------------------
+ */
+parian_light parian_view_light_make(const parian_view_extent *extent, parian_light_type type)
+{
+    parian_light light = point_light(extent, 0.7, 0.6, 0.4, BACK_IRRADIANCE);
+    const float half = (float)(0.5 * extent->body_radius);
+    float strength = light.color[0];
+    light.type = type;
+    for (int c = 0; c < 3; c++) {
+        light.direction[c] = (float)extent->body_centre[c] - light.position[c];
+    }
+    light.outer_deg = 20;
+    light.inner_deg = 14;
+    light.axis_u[0] = half;
+    light.axis_v[2] = half; /* u x v points down */
+    if (type == PARIAN_LIGHT_RECT) {
+        light.position[0] = (float)extent->body_centre[0];
+        light.position[1] = (float)(extent->body_centre[1] + 1.5 * extent->body_radius);
+        light.position[2] = (float)extent->body_centre[2];
+        strength = 4;
+        light.axis_u[0] = -half;
+    } else if (type == PARIAN_LIGHT_DIRECTIONAL) {
+        strength = (float)BACK_IRRADIANCE;
+    } else if (type == PARIAN_LIGHT_ENVIRONMENT) {
+        strength = 0.3f;
+    }
+    light.color[0] = light.color[1] = light.color[2] = strength;
+    return light;
+}
+
+void parian_view_light_remove(const parian_env *env, parian_light_set *set, size_t index)
+{
+    if (index < set->count) {
+        parian_free(env, (void *)(uintptr_t)set->light[index].image.pixel);
+        memmove(set->light + index, set->light + index + 1,
+                (set->count - index - 1) * sizeof *set->light);
+        set->count--;
+    }
+}
+
+bool parian_view_light_place(const parian_light *light, const parian_view_extent *extent,
+                             double place[3])
+{
+    double direction[3];
+    for (int c = 0; c < 3; c++) {
+        place[c] = light->position[c];
+        direction[c] = light->direction[c];
+    }
+    if (light->type == PARIAN_LIGHT_DIRECTIONAL) {
+        vector_normalize(direction);
+        vector_add_scaled(extent->body_centre, -SHOWN_DISTANCE * extent->body_radius, direction,
+                          place);
+    }
+    return light->type != PARIAN_LIGHT_ENVIRONMENT;
+}
+
+void parian_view_light_move(parian_light *light, const parian_view_extent *extent,
+                            const double place[3])
+{
+    double toward[3];
+    vector_add_scaled(extent->body_centre, -1, place, toward);
+    if (light->type == PARIAN_LIGHT_DIRECTIONAL && vector_length(toward) > 0) {
+        vector_normalize(toward);
+    }
+    for (int c = 0; c < 3; c++) {
+        if (light->type == PARIAN_LIGHT_DIRECTIONAL) {
+            light->direction[c] = (float)toward[c];
+        } else {
+            light->position[c] = (float)place[c];
+        }
+    }
 }

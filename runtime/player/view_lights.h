@@ -21,6 +21,19 @@ parian_result parian_view_lights_default(const parian_env *env, const parian_sce
  * number: a measure of how bright the scene is, W/m^2. */
 double parian_view_lights_brightness(const parian_light_set *set, const double point[3]);
 
+/* A light of a type as one is added by hand: beside the bodies, an irradiance of about 2 W/m^2. */
+parian_light parian_view_light_make(const parian_view_extent *extent, parian_light_type type);
+/* Take a light out of the set. */
+void parian_view_light_remove(const parian_env *env, parian_light_set *set, size_t index);
+/* Where a light is shown in the scene: its place, or, of one without a place, a point beside the
+ * bodies that it comes from. False for an environment. */
+bool parian_view_light_place(const parian_light *light, const parian_view_extent *extent,
+                             double place[3]);
+/* Move what is shown to another place: a light with a place goes there, a directional one comes
+ * from there. */
+void parian_view_light_move(parian_light *light, const parian_view_extent *extent,
+                            const double place[3]);
+
 /* Turn a light about a point by a rotation of the world: unit axis, radians. */
 void parian_view_light_turn(parian_light *light, const double centre[3], const double axis[3],
                             double angle);

@@ -11,9 +11,6 @@ static parian_result view(parian_session *session, parian_view_options *options)
     parian_view_app app = {.env = parian_session_env(session), .options = options};
     parian_result result = parian_view_options_check(app.env, options);
     if (result == PARIAN_OK) {
-        result = parian_view_app_open(&app);
-    }
-    if (result == PARIAN_OK) {
         result = options->headless ? parian_view_run_headless(&app) : parian_view_run_window(&app);
     }
     parian_view_app_close(&app);

@@ -11,8 +11,9 @@
 #include <strings.h>
 
 #include "core/memory.h"
+#include "view_sequence.h"
 
-enum { SIZE_MAX_PIXELS = 16384, FRAMES_MAX = 1000000, OPTION_MAX = 24 };
+enum { SIZE_MAX_PIXELS = 16384, WINDOW_WIDTH = 1280, FRAMES_MAX = 1000000, OPTION_MAX = 24 };
 static const double EXPOSURE_LIMIT = 60, RADIANCE_LIMIT = 1e6;
 
 static size_t fill_table(parian_view_options *o, parian_option table[OPTION_MAX])
@@ -23,7 +24,8 @@ static size_t fill_table(parian_view_options *o, parian_option table[OPTION_MAX]
         PARIAN_FLAG_ROW("--cpu", &o->cpu,
                         "Evaluate in C instead of OpenGL; implies --headless and needs no EGL."),
         {"--size", NULL, PARIAN_OPTION_STRING, &o->size_text, "WxH",
-         "Pixels of the picture or window (960x720).", 0, 0, NULL, NULL},
+         "Pixels of the picture (960x720) or window (1280x720: the panel takes 336).", 0, 0, NULL,
+         NULL},
         {"--image", NULL, PARIAN_OPTION_STRING, &o->image, "FILE",
          "Write the picture: .png (tone-mapped sRGB) or .exr (linear radiance).", 0, 0, NULL, NULL},
         {"--light", NULL, PARIAN_OPTION_LIST, &o->lights, "SPEC",
@@ -37,9 +39,26 @@ static size_t fill_table(parian_view_options *o, parian_option table[OPTION_MAX]
          "orbit:YAW,PITCH[,DIST] in degrees, DIST in bounding radii of the bodies or with a unit, "
          "or a JSON file with eye, target, up, fov_deg. (A view that shows all bodies.)",
          0, 0, NULL, NULL},
-        {"--view", NULL, PARIAN_OPTION_CHOICE, &o->view, "MODE",
-         "combined, local, global, irradiance, opaque, normals or charts (combined).", 0, 0,
-         "combined|local|global|irradiance|opaque|normals|charts", NULL},
+        {"--camera-path", NULL, PARIAN_OPTION_STRING, &o->camera_path, "FILE.json",
+         "Render along keyframes of the camera, --frames of them or as many as the file says; "
+         "--image names a sequence, e.g. out-%04d.png. Implies --headless.",
+         0, 0, NULL, NULL},
+        {"--turntable", NULL, PARIAN_OPTION_COUNT, &o->turntable, "N",
+         "Render N frames of one turn about the bodies; --image names a sequence. Implies "
+         "--headless.",
+         1, FRAMES_MAX, NULL, NULL},
+        {"--view", NULL, PARIAN_OPTION_STRING, &o->view_text, "VIEW",
+         "combined, local, global, irradiance, radiosity, opaque, normals, charts, error, "
+         "atlas-irradiance, atlas-radiosity or atlas-charts (combined); headless also several, "
+         "with commas between: %s in --image is the view's name.",
+         0, 0, NULL, NULL},
+        {"--reference", NULL, PARIAN_OPTION_STRING, &o->reference, "TRUTH",
+         "What the error view compares with: a folder of parian-bake reference or --dump, or a "
+         "picture of the same size.",
+         0, 0, NULL, NULL},
+        {"--error-scale", NULL, PARIAN_OPTION_NUMBER, &o->error_scale, "X",
+         "Error that is shown in full red or blue, over the mean of the reference (0.1).", 1e-6,
+         1e6, NULL, NULL},
         {"--method", NULL, PARIAN_OPTION_STRING, &o->method_text, "NAME",
          "How B is computed: transfer (transfer).", 0, 0, NULL, NULL},
         {"--exposure", NULL, PARIAN_OPTION_STRING, &o->exposure_text, "EV|auto",
@@ -83,8 +102,11 @@ parian_result parian_view_options_parse(int argc, char **argv, parian_view_optio
 {
     parian_option table[OPTION_MAX];
     parian_string_list positional = {.count = 0};
-    *options = (parian_view_options){
-        .width = 960, .height = 720, .exposure_auto = true, .background = {-1, -1, -1}};
+    *options = (parian_view_options){.width = 960,
+                                     .height = 720,
+                                     .error_scale = 0.1,
+                                     .exposure_auto = true,
+                                     .background = {-1, -1, -1}};
     const parian_command command = {
         .tool = "parian-view",
         .usage = "ASSET.parian [options]",
@@ -103,7 +125,8 @@ parian_result parian_view_options_parse(int argc, char **argv, parian_view_optio
         return PARIAN_E_ARGUMENT;
     }
     options->asset = positional.item[0];
-    options->headless = options->headless || options->cpu;
+    options->headless =
+        options->headless || options->cpu || options->turntable || options->camera_path;
     return PARIAN_OK;
 }
 
@@ -118,6 +141,7 @@ static parian_result check_size(const parian_env *env, parian_view_options *o)
     unsigned width, height;
     char rest;
     if (!o->size_text) {
+        o->width = o->headless || o->frames ? o->width : WINDOW_WIDTH;
         return PARIAN_OK;
     }
     if (strspn(o->size_text, "0123456789x") != strlen(o->size_text) || strlen(o->size_text) > 11 ||
@@ -193,6 +217,36 @@ static parian_result check_method(const parian_env *env, const parian_view_optio
                        (int)length, text);
 }
 
+static parian_result check_views(const parian_env *env, parian_view_options *o)
+{
+    const char *unknown = NULL;
+    o->display_count =
+        parian_view_display_parse(o->view_text ? o->view_text : "combined", o->displays, &unknown);
+    if (!o->display_count) {
+        return parian_fail(env, PARIAN_E_ARGUMENT, "--view: '%.*s' is unknown, or one too many",
+                           (int)strcspn(unknown, ","), unknown);
+    }
+    if (o->display_count > 1 && !o->headless) {
+        return parian_fail(env, PARIAN_E_ARGUMENT, "several views need --headless or --cpu");
+    }
+    for (size_t i = 0; i < o->display_count; i++) {
+        if (o->displays[i] == PARIAN_DISPLAY_ERROR && !o->reference) {
+            return parian_fail(env, PARIAN_E_ARGUMENT, "--view error needs a --reference");
+        }
+    }
+    return PARIAN_OK;
+}
+
+static parian_result check_image(const parian_env *env, const parian_view_options *o)
+{
+    if (o->image && strcmp(o->image, "-") != 0 && !parian_view_path_ends(o->image, ".png") &&
+        !parian_view_path_ends(o->image, ".exr")) {
+        return parian_fail(env, PARIAN_E_ARGUMENT, "--image: '%s' ends in neither .png nor .exr",
+                           o->image);
+    }
+    return parian_view_sequence_check(env, o);
+}
+
 parian_result parian_view_options_check(const parian_env *env, parian_view_options *options)
 {
     parian_result result = check_size(env, options);
@@ -208,11 +262,8 @@ parian_result parian_view_options_check(const parian_env *env, parian_view_optio
     if (result == PARIAN_OK) {
         result = check_method(env, options);
     }
-    if (result == PARIAN_OK && options->image && strcmp(options->image, "-") != 0 &&
-        !parian_view_path_ends(options->image, ".png") &&
-        !parian_view_path_ends(options->image, ".exr")) {
-        result = parian_fail(env, PARIAN_E_ARGUMENT, "--image: '%s' ends in neither .png nor .exr",
-                             options->image);
+    if (result == PARIAN_OK) {
+        result = check_views(env, options);
     }
-    return result;
+    return result == PARIAN_OK ? check_image(env, options) : result;
 }

@@ -11,6 +11,7 @@
 #include "parian/env.h"
 #include "parian/result.h"
 #include "tool/options.h"
+#include "view_display.h"
 
 typedef enum parian_view_gl {
     PARIAN_VIEW_GL_ANY = 0,
@@ -23,17 +24,20 @@ typedef struct parian_view_options {
     const char *asset;
     bool headless, cpu, no_specular;
     int gl;                                                    /* parian_view_gl */
-    int view;                                                  /* parian_view_mode */
+    parian_view_display displays[PARIAN_DISPLAY_COUNT];        /* of --view */
+    size_t display_count;                                      /* at least 1 */
     const char *lights_file, *camera, *image, *dump, *timings; /* NULL when not given */
-    parian_string_list lights;                                 /* of --light */
-    uint32_t frames;                                           /* 0 when not given */
+    const char *camera_path, *reference;
+    parian_string_list lights;  /* of --light */
+    uint32_t frames, turntable; /* 0 when not given */
+    double error_scale;         /* of the error view, over the mean of the reference */
     uint32_t width, height;
     bool exposure_auto;
     double exposure_ev;
     double roughness;     /* 0: the renderer's default */
     double background[3]; /* negative: in proportion to the lights */
     /* As typed, until they are checked. */
-    const char *size_text, *exposure_text, *background_text, *method_text;
+    const char *size_text, *exposure_text, *background_text, *method_text, *view_text;
 } parian_view_options;
 
 /* Parse; mistakes are told on stderr. After --help or --version options->common says so. */

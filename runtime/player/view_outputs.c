@@ -3,11 +3,29 @@
  * SPDX-License-Identifier: MIT
  */
 #include <stdio.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "tool/files.h"
 #include "tool/picture.h"
 #include "view_app.h"
+
+/* The picture of the last draw, whoever made it. Either may be NULL. */
+static parian_result read_picture(parian_view_app *app, float (*radiance)[4], uint8_t (*srgb)[4])
+{
+    const parian_view_picture *own = &app->picture;
+    const size_t count = (size_t)own->width * own->height;
+    if (count == 0) {
+        return parian_renderer_read_picture(app->renderer, radiance, srgb);
+    }
+    if (radiance) {
+        memcpy(radiance, own->radiance, count * sizeof *radiance);
+    }
+    if (srgb) {
+        memcpy(srgb, own->srgb, count * sizeof *srgb);
+    }
+    return PARIAN_OK;
+}
 
 static parian_result write_exr(parian_view_app *app, const char *path, uint32_t width,
                                uint32_t height)
@@ -17,7 +35,7 @@ static parian_result write_exr(parian_view_app *app, const char *path, uint32_t 
         return parian_fail(app->env, PARIAN_E_NOMEM, "no memory for a picture of %u x %u", width,
                            height);
     }
-    parian_result result = parian_renderer_read_picture(app->renderer, radiance, NULL);
+    parian_result result = read_picture(app, radiance, NULL);
     if (result == PARIAN_OK) {
         result = parian_exr_write(app->env, path, width, height, (const float(*)[4])radiance);
     }
@@ -33,7 +51,7 @@ static parian_result write_png(parian_view_app *app, const char *path, uint32_t 
         return parian_fail(app->env, PARIAN_E_NOMEM, "no memory for a picture of %u x %u", width,
                            height);
     }
-    parian_result result = parian_renderer_read_picture(app->renderer, NULL, srgb);
+    parian_result result = read_picture(app, NULL, srgb);
     for (size_t i = 0; i < (size_t)width * height && result == PARIAN_OK; i++) {
         srgb[i][3] =
             255; /* the background is part of the picture; coverage goes to the EXR alone */

@@ -1,375 +1,532 @@
-/* view_window.c - the window of the player, with its mouse and keys.
+/* view_window.c - the window of the player: opening, loading, drawing, reloading.
  *
  * SPDX-License-Identifier: MIT
  */
 #include "view_window.h"
 
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "core/memory.h"
+#include "tool/picture.h"
 #include "tool/session.h"
-#include "view_vector.h"
+#include "view_glfw.h"
+#include "view_loader.h"
+#include "view_surface.h"
+#ifdef PARIAN_WITH_IMGUI
+#include "view_panel.h"
+#endif
 
-enum { TITLE_MAX = 200 };
-static const double TURN_PER_HEIGHT =
-    3.14159265358979323846; /* radians for a drag over the window's height */
-static const double ZOOM_PER_NOTCH = 0.88, EXPOSURE_STEP = 0.25, WAIT_S = 0.1;
-static const double SMOOTHING =
-    0.1; /* share of the newest frame in the time that the title shows */
-
-static const char help_text[] =
-    "left mouse     orbit                    1..7  combined, local, global, irradiance,\n"
-    "middle, Shift  pan                            opaque, normals, charts\n"
-    "wheel          zoom                     S     opaque for comparison, and back\n"
-    "right mouse    move the light           R     surface reflection on, off\n"
-    "L + mouse      move the light           + -   exposure\n"
-    "Tab            next light               E     exposure by hand, automatic\n"
-    "F              frame the bodies         P     save a picture\n"
-    "H              this help                Esc   quit\n";
+enum { TITLE_MAX = 200, SETTLE_FRAMES = 3 };
+static const double WAIT_S = 0.1, LOOK_S = 0.5, PROGRESS_WAIT_S = 0.03;
 
 typedef struct view_window {
     parian_view_app *app;
-    GLFWwindow *window;
-    bool dirty, lights_dirty, settings_dirty;
-    parian_result result; /* of what a callback did */
-    double mouse_x, mouse_y;
-    size_t selected; /* light */
-    parian_view_mode before_opaque;
-    double frame_ms; /* smoothed */
-    uint32_t frames, pictures;
-    int width, height; /* of the framebuffer */
+    parian_view_relay relay;
+    parian_view_state state;
+    parian_view_glfw glfw;
+    parian_view_surface *surface;
+    parian_view_loader loader;
+    parian_view_watch watch;
+    bool watching;
+    char asset[PARIAN_VIEW_PATH_MAX]; /* shown now */
+    bool reopening;                   /* the same file again, or another one */
+    unsigned line_count;              /* of the relay, as of the last line shown */
+    double next_look;
+    double start; /* of the program's window, seconds */
+    unsigned saved;
+#ifdef PARIAN_WITH_IMGUI
+    parian_panel *panel;
+#endif
 } view_window;
 
-static void *proc_address(const char *name)
+/* ---- over the picture --------------------------------------------------------------------------
+ */
+#ifdef PARIAN_WITH_IMGUI
+static parian_result draw_over(view_window *view)
 {
-    return (void *)glfwGetProcAddress(name);
+    return view->panel ? parian_view_panel_draw(view->panel, &view->state) : PARIAN_OK;
 }
 
-/* ---- mouse -------------------------------------------------------------------------------------
- */
-static void move_light(view_window *view, double right_share, double down_share)
+static parian_result draw_progress(view_window *view, const char *stage, double fraction)
 {
-    double right[3], up[3], back[3];
+    return view->panel ? parian_view_panel_draw_progress(view->panel, &view->state, stage, fraction)
+                       : PARIAN_OK;
+}
+
+static parian_result make_panel(view_window *view)
+{
+    parian_result result =
+        parian_panel_create(&view->relay.env, view->glfw.window, view->glfw.es, &view->panel);
+    view->glfw.panel = view->panel;
+    return result;
+}
+
+static void free_panel(view_window *view)
+{
+    parian_panel_destroy(view->panel);
+}
+#else
+static parian_result draw_over(view_window *view)
+{
+    if (view->state.line[0]) {
+        glfwSetWindowTitle(view->glfw.window, view->state.line);
+    }
+    return PARIAN_OK;
+}
+
+static parian_result draw_progress(view_window *view, const char *stage, double fraction)
+{
+    char title[TITLE_MAX];
+    snprintf(title, sizeof title, "parian-view - %s %.0f %%", stage, 100 * fraction);
+    glfwSetWindowTitle(view->glfw.window, title);
+    return PARIAN_OK;
+}
+
+static parian_result make_panel(view_window *view)
+{
+    (void)view;
+    return PARIAN_OK;
+}
+
+static void free_panel(view_window *view)
+{
+    (void)view;
+}
+#endif
+
+/* Pixels of the picture: the column where it begins, and its width. */
+static uint32_t picture_left(const view_window *view)
+{
+    const int window = view->state.window_width > 0 ? view->state.window_width : 1;
+    return (uint32_t)((int64_t)view->state.area_x * view->glfw.width / window);
+}
+
+static uint32_t picture_width(const view_window *view)
+{
+    return (uint32_t)view->glfw.width - picture_left(view);
+}
+
+static double aspect(const view_window *view)
+{
+    return view->glfw.height > 0 ? (double)picture_width(view) / view->glfw.height : 1;
+}
+
+/* ---- drawing -----------------------------------------------------------------------------------
+ */
+static void show_title(view_window *view)
+{
+    char title[TITLE_MAX];
+    const parian_view_app *app = view->app;
+    const char *slash = strrchr(view->asset, '/');
+    const int last = (view->state.history_at + PARIAN_VIEW_HISTORY - 1) % PARIAN_VIEW_HISTORY;
+    snprintf(title, sizeof title, "%.80s - %s - %.1f ms - %s EV %+.2f - light %d of %zu - H: help",
+             slash ? slash + 1 : view->asset, parian_view_display_names[app->display],
+             (double)view->state.frame_ms[last], app->exposure_auto ? "auto" : "manual",
+             (double)app->exposure_ev, view->state.selected + 1, app->lights.count);
+    glfwSetWindowTitle(view->glfw.window, title);
+}
+
+static void note_times(view_window *view, double ms)
+{
+    parian_view_state *state = &view->state;
+    const int at = state->history_at;
+    state->frame_ms[at] = (float)ms;
+    state->pass_count = parian_renderer_get_times(view->app->renderer, state->pass);
+    for (size_t p = 0; p < state->pass_count; p++) {
+        state->pass_ms[p][at] = (float)state->pass[p].ms;
+    }
+    state->history_at = (at + 1) % PARIAN_VIEW_HISTORY;
+    state->pictures++;
+}
+
+/* The picture alone, to stay in the surface. */
+static parian_result draw_picture(view_window *view)
+{
     parian_view_app *app = view->app;
-    if (view->selected >= app->lights.count) {
+    parian_view_state *state = &view->state;
+    const uint32_t width = picture_width(view), height = (uint32_t)view->glfw.height;
+    const double start = parian_seconds();
+    parian_result result = state->lights_stale ? parian_view_app_send_lights(app) : PARIAN_OK;
+    state->lights_stale = state->picture_stale = false;
+    parian_view_surface_resize(view->surface, width, height);
+    if (result == PARIAN_OK) {
+        result = parian_view_app_draw(app, width, height,
+                                      parian_view_surface_framebuffer(view->surface));
+    }
+    if (result == PARIAN_OK && app->picture.width) {
+        result = parian_view_surface_upload(view->surface, (const uint8_t(*)[4])app->picture.srgb);
+    }
+    if (result == PARIAN_OK) {
+        note_times(view, 1e3 * (parian_seconds() - start));
+        show_title(view);
+    }
+    return result;
+}
+
+/* The window as it is seen, panel included. */
+static void save_window(view_window *view)
+{
+    char path[64];
+    const uint32_t width = (uint32_t)view->glfw.width, height = (uint32_t)view->glfw.height;
+    uint8_t(*srgb)[4];
+    view->state.requests.save_window = false;
+    if (!PARIAN_NEW(view->app->env, srgb, (size_t)width * height)) {
         return;
     }
-    parian_view_camera_axes(&app->camera, right, up, back);
-    parian_light *light = &app->lights.light[view->selected];
-    parian_view_light_turn(light, app->extent.body_centre, up, right_share * TURN_PER_HEIGHT);
-    parian_view_light_turn(light, app->extent.body_centre, right, down_share * TURN_PER_HEIGHT);
-    view->lights_dirty = true;
-}
-
-static bool held(const view_window *view, int button)
-{
-    return glfwGetMouseButton(view->window, button) == GLFW_PRESS;
-}
-
-static bool key_held(const view_window *view, int key)
-{
-    return glfwGetKey(view->window, key) == GLFW_PRESS;
-}
-
-static void on_cursor(GLFWwindow *window, double x, double y)
-{
-    view_window *view = glfwGetWindowUserPointer(window);
-    int width, height;
-    glfwGetWindowSize(window, &width, &height);
-    const double dx = (x - view->mouse_x) / (height > 0 ? height : 1),
-                 dy = (y - view->mouse_y) / (height > 0 ? height : 1);
-    const bool left = held(view, GLFW_MOUSE_BUTTON_LEFT),
-               shift = key_held(view, GLFW_KEY_LEFT_SHIFT) || key_held(view, GLFW_KEY_RIGHT_SHIFT);
-    view->mouse_x = x;
-    view->mouse_y = y;
-    if (held(view, GLFW_MOUSE_BUTTON_RIGHT) || (left && key_held(view, GLFW_KEY_L))) {
-        move_light(view, dx, dy);
-    } else if (held(view, GLFW_MOUSE_BUTTON_MIDDLE) || (left && shift)) {
-        parian_view_camera_pan(&view->app->camera, -dx, dy);
-    } else if (left) {
-        parian_view_camera_orbit(&view->app->camera, -dx * TURN_PER_HEIGHT, dy * TURN_PER_HEIGHT);
-    } else {
-        return;
+    snprintf(path, sizeof path, "parian-view-%03u.png", ++view->saved);
+    if (parian_view_surface_read_window(view->surface, width, height, srgb) == PARIAN_OK) {
+        for (size_t i = 0; i < (size_t)width * height; i++) {
+            srgb[i][3] = 255;
+        }
+        if (parian_png_write(view->app->env, path, width, height, (const uint8_t(*)[4])srgb) ==
+            PARIAN_OK) {
+            parian_log(view->app->env, PARIAN_LOG_INFO, "wrote %s", path);
+        }
     }
-    view->dirty = true;
+    parian_free(view->app->env, srgb);
 }
 
-static void on_scroll(GLFWwindow *window, double x, double y)
+/* The picture, what is over it, and the swap; the window as it is seen is saved before the swap. */
+static parian_result present(view_window *view)
 {
-    view_window *view = glfwGetWindowUserPointer(window);
-    (void)x;
-    parian_view_camera_zoom(&view->app->camera, pow(ZOOM_PER_NOTCH, y));
-    view->dirty = true;
+    parian_view_surface_show(view->surface, picture_left(view), (uint32_t)view->glfw.width,
+                             (uint32_t)view->glfw.height);
+    parian_result result = draw_over(view);
+    if (result == PARIAN_OK && view->state.requests.save_window) {
+        save_window(view);
+    }
+    glfwSwapBuffers(view->glfw.window);
+    return result;
 }
 
-static void on_resize(GLFWwindow *window, int width, int height)
+/* What the renderer refuses (a light with absurd numbers, a reference of another size) does not end
+ * the program: the picture before stays. A failing device or no memory does. */
+static bool is_fatal(parian_result result)
 {
-    view_window *view = glfwGetWindowUserPointer(window);
-    view->width = width;
-    view->height = height;
-    view->dirty = true;
+    return result == PARIAN_E_DEVICE || result == PARIAN_E_NOMEM;
 }
 
-static void on_refresh(GLFWwindow *window)
+static void show_new_line(view_window *view)
 {
-    view_window *view = glfwGetWindowUserPointer(window);
-    view->dirty = true;
+    char line[PARIAN_VIEW_LINE_MAX];
+    const unsigned count = parian_view_relay_line(&view->relay, line);
+    if (count != view->line_count) {
+        memcpy(view->state.line, line, sizeof line);
+        view->line_count = count;
+        view->glfw.settle = SETTLE_FRAMES;
+    }
 }
 
-/* ---- keys --------------------------------------------------------------------------------------
+static parian_result draw_frame(view_window *view)
+{
+    parian_result result = view->state.picture_stale ? draw_picture(view) : PARIAN_OK;
+    show_new_line(view);
+    if (is_fatal(result)) {
+        return result;
+    }
+    return present(view);
+}
+
+/* ---- requests ----------------------------------------------------------------------------------
  */
-static void set_view(view_window *view, parian_view_mode mode)
+static void list_keys(void)
 {
-    view->app->settings.view = mode;
-    view->settings_dirty = true;
-}
-
-static void toggle_opaque(view_window *view)
-{
-    const parian_view_mode now = view->app->settings.view;
-    if (now == PARIAN_VIEW_OPAQUE) {
-        set_view(view, view->before_opaque);
-    } else {
-        view->before_opaque = now;
-        set_view(view, PARIAN_VIEW_OPAQUE);
+    for (size_t i = 0; parian_view_help[i][0]; i++) {
+        printf("%-22s %s\n", parian_view_help[i][0], parian_view_help[i][1]);
     }
-}
-
-static void frame_bodies(view_window *view)
-{
-    const double aspect = view->height > 0 ? (double)view->width / view->height : 1;
-    view->result = parian_view_app_frame(view->app, aspect);
+    fflush(stdout);
 }
 
 static void save_picture(view_window *view)
 {
     char path[64];
-    snprintf(path, sizeof path, "parian-view-%03u.png", ++view->pictures);
-    if (view->width > 0 && view->height > 0 &&
-        parian_view_write_image(view->app, path, (uint32_t)view->width, (uint32_t)view->height) ==
-            PARIAN_OK) {
+    snprintf(path, sizeof path, "parian-view-%03u.png", ++view->saved);
+    if (parian_view_write_image(view->app, path, picture_width(view),
+                                (uint32_t)view->glfw.height) == PARIAN_OK) {
         parian_log(view->app->env, PARIAN_LOG_INFO, "wrote %s", path);
+        snprintf(view->state.line, sizeof view->state.line, "wrote %s", path);
     }
 }
 
-static void select_next_light(view_window *view)
+static parian_result answer_requests(view_window *view)
 {
-    const size_t count = view->app->lights.count;
-    view->selected = count ? (view->selected + 1) % count : 0;
+    parian_view_requests *requests = &view->state.requests;
+    parian_result result = PARIAN_OK;
+    if (requests->quit) {
+        glfwSetWindowShouldClose(view->glfw.window, GLFW_TRUE);
+    }
+    if (requests->list_keys) {
+        list_keys();
+    }
+    if (requests->frame_bodies && view->glfw.height > 0) {
+        result = parian_view_app_frame(view->app, aspect(view));
+        view->state.picture_stale = true;
+    }
+    if (requests->save_picture && view->state.pictures && !view->state.picture_stale) {
+        save_picture(view);
+    }
+    *requests = (parian_view_requests){.save_window = requests->save_window};
+    return result;
 }
 
-static void handle_key(view_window *view, int key)
+/* ---- files -------------------------------------------------------------------------------------
+ */
+static void note_size(view_window *view)
 {
-    if (key >= GLFW_KEY_1 && key <= GLFW_KEY_7) {
-        set_view(view, (parian_view_mode)(key - GLFW_KEY_1));
+    struct stat found;
+    view->state.file_size = stat(view->asset, &found) == 0 ? (uint64_t)found.st_size : 0;
+}
+
+static void open_dropped(view_window *view)
+{
+    const char *path = view->glfw.dropped;
+    parian_result result = PARIAN_OK;
+    view->state.line[0] = '\0';
+    switch (parian_view_drop_kind(path)) {
+    case PARIAN_DROP_ASSET:
+        view->reopening = strcmp(path, view->asset) == 0;
+        result = parian_view_loader_begin(&view->loader, &view->relay.env, path);
+        break;
+    case PARIAN_DROP_LIGHTS:
+        result = parian_view_app_read_lights(view->app, path);
+        view->state.lights_stale = view->state.picture_stale = result == PARIAN_OK;
+        view->state.selected = view->app->lights.count ? 0 : PARIAN_VIEW_NO_LIGHT;
+        break;
+    case PARIAN_DROP_UNKNOWN:
+        snprintf(view->state.line, sizeof view->state.line,
+                 "%.300s ends in neither .parian nor .json", path);
+        break;
+    }
+    view->glfw.dropped[0] = '\0';
+    view->glfw.settle = SETTLE_FRAMES;
+}
+
+/* The file changed on disk and whoever wrote it is done: open it again, in the background. */
+static void look_for_changes(view_window *view)
+{
+    const double now = parian_seconds();
+    if (now < view->next_look || view->loader.busy) {
         return;
     }
-    switch (key) {
-    case GLFW_KEY_ESCAPE:
-        glfwSetWindowShouldClose(view->window, GLFW_TRUE);
-        break;
-    case GLFW_KEY_F:
-        frame_bodies(view);
-        break;
-    case GLFW_KEY_S:
-        toggle_opaque(view);
-        break;
-    case GLFW_KEY_R:
-        view->app->settings.no_specular = !view->app->settings.no_specular;
-        view->settings_dirty = true;
-        break;
-    case GLFW_KEY_E:
-        view->app->exposure_auto = !view->app->exposure_auto;
-        break;
-    case GLFW_KEY_EQUAL:
-    case GLFW_KEY_KP_ADD:
-        view->app->exposure_ev += (float)EXPOSURE_STEP;
-        break;
-    case GLFW_KEY_MINUS:
-    case GLFW_KEY_KP_SUBTRACT:
-        view->app->exposure_ev -= (float)EXPOSURE_STEP;
-        break;
-    case GLFW_KEY_TAB:
-        select_next_light(view);
-        break;
-    case GLFW_KEY_P:
-        save_picture(view);
-        break;
-    case GLFW_KEY_H:
-        fputs(help_text, stdout);
-        fflush(stdout);
-        break;
-    default:
-        break;
+    view->next_look = now + LOOK_S;
+    if (view->watching && parian_view_watch_changed(&view->watch, view->asset)) {
+        view->state.line[0] = '\0';
+        view->reopening = true;
+        parian_view_loader_begin(&view->loader, &view->relay.env, view->asset);
     }
 }
 
-static void on_key(GLFWwindow *window, int key, int scancode, int action, int mods)
+/* An asset that was opened beside the one that is shown takes its place. What is wrong with it is
+ * one line, and the old one stays. */
+static parian_result take_loaded(view_window *view)
 {
-    view_window *view = glfwGetWindowUserPointer(window);
-    (void)scancode;
-    (void)mods;
-    if (action != GLFW_RELEASE) {
-        handle_key(view, key);
-        view->dirty = true;
+    parian_scene *scene;
+    parian_result result;
+    if (!parian_view_loader_take(&view->loader, &result, &scene)) {
+        return PARIAN_OK;
     }
-}
-
-/* ---- frames ------------------------------------------------------------------------------------
- */
-static void show_title(view_window *view)
-{
-    static const char *const names[] = {"combined", "local",   "global", "irradiance",
-                                        "opaque",   "normals", "charts"};
-    char title[TITLE_MAX];
-    const parian_view_app *app = view->app;
-    const char *slash = strrchr(app->options->asset, '/');
-    snprintf(title, sizeof title,
-             "%.80s - %s - %.1f ms, %.0f fps - %s EV %+.2f - light %zu of %zu - H: help",
-             slash ? slash + 1 : app->options->asset, names[app->settings.view], view->frame_ms,
-             view->frame_ms > 0 ? 1e3 / view->frame_ms : 0, app->exposure_auto ? "auto" : "manual",
-             (double)app->exposure_ev, app->lights.count ? view->selected + 1 : 0,
-             app->lights.count);
-    glfwSetWindowTitle(view->window, title);
-}
-
-static parian_result draw_frame(view_window *view)
-{
-    parian_view_app *app = view->app;
-    parian_result result = PARIAN_OK;
-    const double start = parian_seconds();
-    if (view->settings_dirty) {
-        result = parian_renderer_set_settings(app->renderer, &app->settings);
-    }
-    if (result == PARIAN_OK && view->lights_dirty) {
-        result = parian_renderer_set_lights(app->renderer, app->lights.light, app->lights.count);
-    }
+    view->glfw.settle = SETTLE_FRAMES;
     if (result == PARIAN_OK) {
-        result = parian_view_app_draw(app, (uint32_t)view->width, (uint32_t)view->height, 0);
+        view->app->aspect = aspect(view);
+        result = parian_view_app_adopt(view->app, scene, view->reopening);
     }
     if (result != PARIAN_OK) {
-        return result;
+        return PARIAN_OK;
     }
-    glfwSwapBuffers(view->window);
-    const double ms = 1e3 * (parian_seconds() - start);
-    view->frame_ms += (view->frames ? SMOOTHING : 1) * (ms - view->frame_ms);
-    view->frames++;
-    view->dirty = view->lights_dirty = view->settings_dirty = false;
-    show_title(view);
+    if (!view->reopening) {
+        memcpy(view->asset, view->loader.path, sizeof view->asset);
+        parian_view_watch_begin(&view->watch, view->asset);
+        view->state.selected = view->app->lights.count ? 0 : PARIAN_VIEW_NO_LIGHT;
+    }
+    parian_log(view->app->env, PARIAN_LOG_INFO, "opened %s%s", view->asset,
+               view->reopening ? " again" : "");
+    snprintf(view->state.line, sizeof view->state.line, "%s %.300s",
+             view->reopening ? "read again:" : "opened", view->asset);
+    note_size(view);
+    parian_renderer_set_timing(view->app->renderer, view->state.time_passes);
+    view->state.renderer_name = parian_renderer_name(view->app->renderer);
+    view->state.picture_stale = true;
     return PARIAN_OK;
+}
+
+/* ---- the first asset ---------------------------------------------------------------------------
+ */
+static parian_result show_progress(view_window *view, const char *stage, double fraction)
+{
+    parian_view_surface_show(view->surface, picture_left(view), (uint32_t)view->glfw.width,
+                             (uint32_t)view->glfw.height);
+    parian_result result = draw_progress(view, stage, fraction);
+    glfwSwapBuffers(view->glfw.window);
+    return result;
+}
+
+/* Keep the window alive until the asset is open. */
+static parian_result wait_for_asset(view_window *view, parian_scene **scene)
+{
+    char stage[PARIAN_VIEW_STAGE_MAX];
+    parian_result result = parian_view_loader_begin(&view->loader, &view->relay.env, view->asset);
+    parian_result opened = PARIAN_OK;
+    while (result == PARIAN_OK && !parian_view_loader_take(&view->loader, &opened, scene)) {
+        const double fraction = parian_view_relay_progress(&view->relay, stage);
+        if (parian_cancelled(view->app->env) || glfwWindowShouldClose(view->glfw.window)) {
+            return PARIAN_E_INTERRUPTED;
+        }
+        result = show_progress(view, stage[0] ? stage : "reading", fraction);
+        glfwWaitEventsTimeout(PROGRESS_WAIT_S);
+    }
+    return result == PARIAN_OK ? opened : result;
+}
+
+static parian_result open_first(view_window *view)
+{
+    parian_scene *scene = NULL;
+    parian_view_watch_begin(&view->watch, view->asset);
+    parian_result result = wait_for_asset(view, &scene);
+    if (result == PARIAN_OK) {
+        show_progress(view, "upload", 1);
+        parian_view_state_lay_out(&view->state);
+        view->app->aspect = aspect(view);
+        result = parian_view_app_adopt(view->app, scene, false);
+    }
+    if (result == PARIAN_OK) {
+        view->watching = true;
+        note_size(view);
+        view->state.renderer_name = parian_renderer_name(view->app->renderer);
+        view->state.selected = view->app->lights.count ? 0 : PARIAN_VIEW_NO_LIGHT;
+        parian_view_relay_set_soft(&view->relay, true);
+    }
+    return result;
+}
+
+/* ---- the loop ----------------------------------------------------------------------------------
+ */
+static parian_result step(view_window *view)
+{
+    const uint32_t frames_max = view->app->options->frames;
+    parian_view_state *state = &view->state;
+    parian_result result = PARIAN_OK;
+    if (frames_max) {
+        state->picture_stale = state->lights_stale = true;
+    }
+    if (view->glfw.dropped[0]) {
+        open_dropped(view);
+    }
+    result = take_loaded(view);
+    look_for_changes(view);
+    parian_view_state_lay_out(state);
+    const bool seen = view->glfw.width > 0 && view->glfw.height > 0;
+    if (result == PARIAN_OK && seen && (state->picture_stale || view->glfw.settle > 0)) {
+        view->glfw.settle = view->glfw.settle > 0 ? view->glfw.settle - 1 : 0;
+        result = draw_frame(view);
+        if (state->pictures == 1 && view->start > 0) {
+            parian_log(view->app->env, PARIAN_LOG_INFO, "first picture after %.2f s",
+                       parian_seconds() - view->start);
+            view->start = 0;
+        }
+        glfwPollEvents();
+    } else {
+        glfwWaitEventsTimeout(WAIT_S);
+    }
+    return result == PARIAN_OK ? answer_requests(view) : result;
 }
 
 /* Draws when something changed, else waits; with --frames, draws that many with a relight each. */
 static parian_result loop(view_window *view)
 {
     const uint32_t frames_max = view->app->options->frames;
-    while (!glfwWindowShouldClose(view->window)) {
-        if (parian_cancelled(view->app->env)) {
-            return PARIAN_E_INTERRUPTED;
-        }
-        if (frames_max) {
-            view->dirty = view->lights_dirty = true;
-        }
-        if (view->dirty && view->width > 0 && view->height > 0) {
-            parian_result result = draw_frame(view);
-            if (result != PARIAN_OK) {
-                return result;
-            }
-            glfwPollEvents();
-        } else {
-            glfwWaitEventsTimeout(WAIT_S);
-        }
-        if (view->result != PARIAN_OK) {
-            return view->result;
-        }
-        if (frames_max && view->frames >= frames_max) {
-            break;
-        }
+    parian_result result = PARIAN_OK;
+    view->state.picture_stale = true;
+    while (result == PARIAN_OK && !glfwWindowShouldClose(view->glfw.window) &&
+           !(frames_max && view->state.pictures >= frames_max)) {
+        result = parian_cancelled(view->app->env) ? PARIAN_E_INTERRUPTED : step(view);
     }
-    return PARIAN_OK;
+    return result;
 }
 
-static parian_result write_outputs(const view_window *view)
+static parian_result write_outputs(view_window *view)
 {
     parian_view_app *app = view->app;
     parian_result result = PARIAN_OK;
-    if (app->options->image && view->frames > 0) {
-        result = parian_view_write_image(app, app->options->image, (uint32_t)view->width,
-                                         (uint32_t)view->height);
+    parian_view_relay_set_soft(&view->relay, false);
+    if (app->options->image && view->state.pictures > 0) {
+        result = parian_view_write_image(app, app->options->image, picture_width(view),
+                                         (uint32_t)view->glfw.height);
     }
     if (result == PARIAN_OK && app->options->dump) {
         result = parian_view_write_dump(app, app->options->dump);
+    }
+    for (size_t p = 0; p < view->state.pass_count; p++) {
+        parian_log(app->env, PARIAN_LOG_DEBUG, "pass %s ran %llu times", view->state.pass[p].name,
+                   (unsigned long long)view->state.pass[p].runs);
     }
     return result;
 }
 
 /* ---- making ------------------------------------------------------------------------------------
  */
-static GLFWwindow *create_window(const parian_view_options *o, bool core)
+static parian_result make(view_window *view)
 {
-    glfwDefaultWindowHints();
-    glfwWindowHint(GLFW_CLIENT_API, core ? GLFW_OPENGL_API : GLFW_OPENGL_ES_API);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, core ? 3 : 0);
-    if (core) {
-        glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-        glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    parian_result result = parian_view_glfw_open(&view->glfw, &view->state);
+    if (result == PARIAN_OK) {
+        result = parian_view_surface_create(&view->relay.env, parian_view_glfw_proc_address,
+                                            &view->surface);
     }
-    return glfwCreateWindow((int)o->width, (int)o->height, "parian-view", NULL, NULL);
+    return result == PARIAN_OK ? make_panel(view) : result;
 }
 
-static parian_result open_window(view_window *view)
+static void unmake(view_window *view)
 {
-    const parian_view_options *o = view->app->options;
-    if (o->gl != PARIAN_VIEW_GL_ES) {
-        view->window = create_window(o, true);
+    parian_view_loader_stop(&view->loader);
+    parian_view_app_stop(view->app);
+    free_panel(view);
+    parian_view_surface_destroy(view->surface);
+    parian_view_glfw_close(&view->glfw);
+}
+
+static parian_result run(view_window *view)
+{
+    parian_result result = parian_view_app_prepare(view->app);
+    if (result == PARIAN_OK) {
+        result = make(view);
     }
-    if (!view->window && o->gl != PARIAN_VIEW_GL_CORE) {
-        view->window = create_window(o, false);
+    if (result == PARIAN_OK) {
+        result = open_first(view);
     }
-    if (!view->window) {
-        return parian_fail(view->app->env, PARIAN_E_DEVICE,
-                           "the display gives no OpenGL 3.3 core or OpenGL ES 3.0 window; "
-                           "--headless and --cpu need none");
+    if (result == PARIAN_OK) {
+        result = loop(view);
     }
-    glfwSetWindowUserPointer(view->window, view);
-    glfwSetCursorPosCallback(view->window, on_cursor);
-    glfwSetScrollCallback(view->window, on_scroll);
-    glfwSetKeyCallback(view->window, on_key);
-    glfwSetFramebufferSizeCallback(view->window, on_resize);
-    glfwSetWindowRefreshCallback(view->window, on_refresh);
-    glfwMakeContextCurrent(view->window);
-    glfwSwapInterval(o->frames ? 0 : 1);
-    glfwGetFramebufferSize(view->window, &view->width, &view->height);
-    glfwGetCursorPos(view->window, &view->mouse_x, &view->mouse_y);
-    return PARIAN_OK;
+    return result == PARIAN_OK ? write_outputs(view) : result;
 }
 
 parian_result parian_view_run_window(parian_view_app *app)
 {
-    view_window view = {.app = app, .dirty = true};
-    if (!glfwInit()) {
-        return parian_fail(app->env, PARIAN_E_DEVICE,
-                           "no display to open a window on; --headless renders without one");
+    const parian_env *session = app->env;
+    view_window *view;
+    if (strlen(app->options->asset) >= PARIAN_VIEW_PATH_MAX) {
+        return parian_fail(session, PARIAN_E_ARGUMENT, "the asset's path is too long");
     }
-    parian_result result = open_window(&view);
-    if (result == PARIAN_OK) {
-        result = parian_view_app_start(app, proc_address);
+    if (!PARIAN_NEW0(session, view, 1)) {
+        return parian_fail(session, PARIAN_E_NOMEM, "no memory for a window");
     }
-    if (result == PARIAN_OK) {
-        result = loop(&view);
-    }
-    if (result == PARIAN_OK) {
-        result = write_outputs(&view);
-    }
-    parian_view_app_stop(app);
-    if (view.window) {
-        glfwDestroyWindow(view.window);
-    }
-    glfwTerminate();
+    view->app = app;
+    view->start = parian_seconds();
+    strcpy(view->asset, app->options->asset);
+    parian_view_relay_init(&view->relay, session);
+    app->env = &view->relay.env;
+    app->get_proc_address = parian_view_glfw_proc_address;
+    view->state = (parian_view_state){.app = app,
+                                      .show_panel = !app->options->frames,
+                                      .show_gizmos = !app->options->frames,
+                                      .selected = PARIAN_VIEW_NO_LIGHT,
+                                      .dragged = PARIAN_VIEW_NO_LIGHT,
+                                      .renderer_name = ""};
+    parian_result result = run(view);
+    unmake(view);
+    parian_view_app_close(app);
+    app->env = session;
+    parian_view_relay_destroy(&view->relay);
+    parian_free(session, view);
     return result;
 }

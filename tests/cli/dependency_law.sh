@@ -27,7 +27,7 @@ forbid "the libraries know the tools" formats/container formats/core formats/inc
 
 # Foreign libraries.
 foreign='CGAL/|OpenMesh/|draco/|tiny_?gltf|stb_|embree|tbb/'
-media='[oO]pen(EXR|exr)|png\.h|cjson|GLFW|EGL|epoxy'
+media='[oO]pen(EXR|exr)|png\.h|cjson|GLFW|EGL|epoxy|imgui'
 forbid "a mesh library outside the adapters" formats runtime assets bake/stages bake/pipeline bake/cli -- "$foreign"
 forbid "a picture, window or JSON library in a library" formats/container formats/core formats/include runtime/include \
     runtime/lights runtime/method runtime/shade runtime/gl runtime/cpu -- "$media"
@@ -49,7 +49,7 @@ for header in formats/include/parian/*.h runtime/include/parian/*.h; do
     grep -q 'extern "C"' "$header" || fail "$header has no extern \"C\""
     headers=$((headers + 1))
 done
-for header in bake/adapters/*.h; do
+for header in bake/adapters/*.h runtime/player/adapters/*.h; do
     grep -q 'extern "C"' "$header" || continue # shared by the .cpp files of one adapter only
     check_header "$header"
     headers=$((headers + 1))

@@ -192,6 +192,7 @@ typedef struct parian_texel_arrays {
     float (*normal)[3];
     float *area;
     uint32_t (*place)[2];   /* column and row in the atlas of the body */
+    uint32_t *chart;        /* below chart_count of the body */
     float (*irradiance)[3]; /* E, transmitted, W m^-2 */
     float (*radiosity)[3];  /* B, W m^-2 */
     float (*radiosity_local)[3];
