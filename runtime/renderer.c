@@ -127,9 +127,7 @@ parian_result parian_renderer_create(const parian_env *env, const parian_scene *
     if (!PARIAN_NEW0(env, made, 1)) {
         return parian_fail(env, PARIAN_E_NOMEM, "no memory for a renderer");
     }
-    if (env) {
-        made->env = *env;
-    }
+    parian_frame_memory_init(&made->frame_memory, env, &made->env);
     made->scene = scene;
     made->desc = *desc;
     if (!made->desc.shadow_size) {
@@ -141,6 +139,7 @@ parian_result parian_renderer_create(const parian_env *env, const parian_scene *
         parian_renderer_destroy(made);
         return result;
     }
+    parian_frame_memory_trim(&made->frame_memory); /* what creation needed, frames do not */
     *renderer = made;
     return PARIAN_OK;
 }
@@ -148,12 +147,13 @@ parian_result parian_renderer_create(const parian_env *env, const parian_scene *
 void parian_renderer_destroy(parian_renderer *renderer)
 {
     if (renderer) {
-        parian_env env = renderer->env;
+        const parian_env *env = &renderer->env, parent = renderer->frame_memory.parent;
         renderer->backend->destroy(renderer);
-        parian_light_list_free(&env, &renderer->lights);
-        parian_free(&env, renderer->instances);
-        parian_free(&env, renderer->optics);
-        parian_free(&env, renderer);
+        parian_light_list_free(env, &renderer->lights);
+        parian_free(env, renderer->instances);
+        parian_free(env, renderer->optics);
+        parian_frame_memory_trim(&renderer->frame_memory);
+        parian_free(&parent, renderer);
     }
 }
 
@@ -238,6 +238,7 @@ parian_result parian_renderer_relight(parian_renderer *renderer)
     if (!renderer->lights_changed) {
         return PARIAN_OK;
     }
+    parian_frame_memory_tick(&renderer->frame_memory);
     parian_result result = parian_renderer_check_uploaded(renderer);
     if (result == PARIAN_OK) {
         result = renderer->backend->relight(renderer);
@@ -299,6 +300,7 @@ parian_result parian_renderer_draw(parian_renderer *renderer, const parian_draw_
     if (renderer->settings.view == PARIAN_VIEW_VALUES && !renderer->has_values) {
         return parian_fail(&renderer->env, PARIAN_E_ARGUMENT, "there are no values to paint");
     }
+    parian_frame_memory_tick(&renderer->frame_memory);
     parian_result result = fit_picture(renderer, desc);
     if (result == PARIAN_OK) {
         result = parian_renderer_relight(renderer);

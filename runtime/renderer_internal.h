@@ -6,6 +6,7 @@
 #define PARIAN_RENDERER_INTERNAL_H
 
 #include "core/body.h"
+#include "frame_memory.h"
 #include "lights/light_list.h"
 #include "parian/runtime.h"
 #include "placement.h"
@@ -84,7 +85,8 @@ extern const parian_backend_table parian_gl_backend, parian_cpu_backend;
 
 enum { PARIAN_RENDERER_NAME_MAX = 256 };
 struct parian_renderer {
-    parian_env env;
+    parian_env env; /* of frame_memory */
+    parian_frame_memory frame_memory;
     const parian_scene *scene;
     parian_renderer_desc desc;
     const parian_backend_table *backend;

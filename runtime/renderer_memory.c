@@ -216,6 +216,9 @@ parian_result parian_renderer_upload(parian_renderer *renderer, uint64_t max_byt
     }
     if (renderer->upload_left > 0) {
         result = renderer->backend->upload(renderer, max_bytes ? max_bytes : UINT64_MAX);
+        if (renderer->upload_left == 0) {
+            parian_frame_memory_trim(&renderer->frame_memory);
+        }
     }
     if (bytes_left) {
         *bytes_left = renderer->upload_left;

@@ -107,6 +107,7 @@ typedef struct parian_gl_api {
     PARIAN_GL_FUNCTIONS_ES(X)
     PARIAN_GL_FUNCTIONS_INDEXED(X)
 #undef X
+    PFNGLGETGRAPHICSRESETSTATUSPROC GetGraphicsResetStatus; /* NULL where contexts do not tell */
 } parian_gl_api;
 
 /* Errors: PARIAN_E_UNSUPPORTED names the first function that the loader does not know. */

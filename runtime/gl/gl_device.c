@@ -22,7 +22,29 @@ static bool has_extension(const parian_gl_api *gl, const char *name)
     return false;
 }
 
-static parian_result check_version(gl_device *device, char *name, size_t name_size)
+/* Where it is not part of OpenGL, an extension brings it, with a suffix. */
+static void load_reset_status(gl_device *device, void *(*get_proc_address)(const char *name))
+{
+    static const struct {
+        const char *extension, *function;
+    } ways[] = {{"GL_KHR_robustness", "glGetGraphicsResetStatus"},
+                {"GL_KHR_robustness", "glGetGraphicsResetStatusKHR"},
+                {"GL_ARB_robustness", "glGetGraphicsResetStatusARB"},
+                {"GL_EXT_robustness", "glGetGraphicsResetStatusEXT"}};
+    void *address = NULL;
+    if (device->version >= (device->es ? 32 : 45)) {
+        address = get_proc_address(ways[0].function);
+    }
+    for (size_t i = 0; !address && i < sizeof ways / sizeof *ways; i++) {
+        if (has_extension(&device->gl, ways[i].extension)) {
+            address = get_proc_address(ways[i].function);
+        }
+    }
+    memcpy(&device->gl.GetGraphicsResetStatus, &address, sizeof address);
+}
+
+static parian_result check_version(gl_device *device, void *(*get_proc_address)(const char *name),
+                                   char *name, size_t name_size)
 {
     const parian_gl_api *gl = &device->gl;
     const char *version = (const char *)gl->GetString(GL_VERSION);
@@ -46,6 +68,7 @@ static parian_result check_version(gl_device *device, char *name, size_t name_si
             device->env, PARIAN_E_UNSUPPORTED,
             "this OpenGL ES cannot draw to floats: GL_EXT_color_buffer_float is missing");
     }
+    load_reset_status(device, get_proc_address);
     gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &device->texture_max);
     gl->GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &device->layers_max);
     return PARIAN_OK;
@@ -59,7 +82,7 @@ parian_result gl_device_init(const parian_env *env, void *(*get_proc_address)(co
     device->memory_budget = memory_budget ? memory_budget : UINT64_MAX;
     parian_result result = parian_gl_api_load(env, get_proc_address, &device->gl);
     if (result == PARIAN_OK) {
-        result = check_version(device, name, name_size);
+        result = check_version(device, get_proc_address, name, name_size);
     }
     if (result == PARIAN_OK) {
         result = parian_gl_api_load_flavour(env, get_proc_address, device->es,

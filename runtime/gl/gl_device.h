@@ -83,6 +83,7 @@ typedef struct gl_device {
     parian_gl_api gl;
     bool es;
     int version; /* 33 is 3.3 */
+    bool lost; /* the context is: nothing works any more */
     GLint texture_max, layers_max;
     parian_memory memory; /* in use */
     uint64_t memory_budget;

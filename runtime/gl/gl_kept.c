@@ -234,6 +234,16 @@ static void put_back_raster(const gl_device *device, const gl_kept_state *kept)
     gl->ClampColor(GL_CLAMP_READ_COLOR, (GLenum)kept->clamp_read);
 }
 
+static bool is_lost(gl_device *device, GLenum error)
+{
+    const parian_gl_api *gl = &device->gl;
+    if (error == GL_CONTEXT_LOST ||
+        (gl->GetGraphicsResetStatus && gl->GetGraphicsResetStatus() != GL_NO_ERROR)) {
+        device->lost = true;
+    }
+    return device->lost;
+}
+
 parian_result gl_device_leave(gl_device *device, parian_result result, const char *what)
 {
     const parian_gl_api *gl = &device->gl;
@@ -251,6 +261,13 @@ parian_result gl_device_leave(gl_device *device, parian_result result, const cha
         if (has(device, &kept_pixel_store[i])) {
             gl->PixelStorei(kept_pixel_store[i].name, kept->pixel_store[i]);
         }
+    }
+    if (is_lost(device, error)) {
+        return parian_fail(
+            device->env, PARIAN_E_DEVICE,
+            "the OpenGL context was lost while it %s: destroy this renderer, and make "
+            "another in a new context",
+            what);
     }
     if (result == PARIAN_OK && error != GL_NO_ERROR) {
         parian_result kind = error == GL_OUT_OF_MEMORY ? PARIAN_E_NOMEM : PARIAN_E_DEVICE;

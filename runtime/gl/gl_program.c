@@ -74,7 +74,7 @@ static bool build(gl_device *device, gl_program_id id)
 {
     const parian_gl_api *gl = &device->gl;
     GLuint vertex = compile(device, GL_VERTEX_SHADER, &parts_of[id]);
-    GLuint fragment = compile(device, GL_FRAGMENT_SHADER, &parts_of[id]);
+    GLuint fragment = vertex ? compile(device, GL_FRAGMENT_SHADER, &parts_of[id]) : 0;
     GLint done = 0;
     if (vertex && fragment) {
         char log[512] = "";

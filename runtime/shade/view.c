@@ -48,6 +48,7 @@ parian_view parian_view_make(const parian_camera *camera)
 
 uint32_t parian_view_supersampling(uint32_t width, uint32_t height, uint32_t side_max)
 {
-    uint32_t side = width > height ? width : height;
-    return 2 * side <= side_max ? 2 : 1;
+    const uint32_t side = width > height ? width : height;
+    const bool many = (uint64_t)width * height * 4 > PARIAN_VIEW_SAMPLES_MAX;
+    return 2 * side <= side_max && !many ? 2 : 1;
 }
