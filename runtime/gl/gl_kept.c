@@ -78,6 +78,10 @@ static void drop_errors(gl_device *device)
         if (error == GL_NO_ERROR) {
             return;
         }
+        if (error == GL_CONTEXT_LOST) {
+            device->lost = true;
+            return;
+        }
         parian_log(device->env, PARIAN_LOG_WARNING,
                    "OpenGL error 0x%04X was pending before this call; it is dropped", error);
     }
