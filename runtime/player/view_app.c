@@ -12,6 +12,7 @@
 
 /* Radiance of the default background for each W/m^2 of light; a white surface has 0.32. */
 static const double BACKGROUND_SHARE = 0.005, BACKGROUND_MAX = 1e6;
+enum { UPLOAD_SLICE = 16 << 20 }; /* bytes */
 static const double WHITE = 2.2, EXPOSURE_MAX = 60;
 
 /* ---- first choices -----------------------------------------------------------------------------
@@ -104,15 +105,36 @@ static parian_result make_view(parian_view_app *app)
     return result;
 }
 
+/* In slices of some milliseconds, so that the window can tell how far it is. */
+static parian_result upload(const parian_view_app *app, parian_renderer *renderer)
+{
+    uint64_t left = 0, all = 0;
+    parian_result result;
+    do {
+        result = parian_cancelled(app->env) ? PARIAN_E_INTERRUPTED
+                                            : parian_renderer_upload(renderer, UPLOAD_SLICE, &left);
+        all = all > left ? all : left + UPLOAD_SLICE;
+        if (app->on_upload && result == PARIAN_OK && left > 0) {
+            app->on_upload(app->on_upload_user, 1 - (double)left / (double)all);
+        }
+    } while (result == PARIAN_OK && left > 0);
+    return result;
+}
+
 parian_result parian_view_app_adopt(parian_view_app *app, parian_scene *scene, bool keep)
 {
     const parian_renderer_desc desc = {.backend = app->get_proc_address ? PARIAN_BACKEND_GL
                                                                         : PARIAN_BACKEND_CPU,
-                                       .get_proc_address = app->get_proc_address};
+                                       .get_proc_address = app->get_proc_address,
+                                       .deferred_upload = true};
     parian_scene *before = app->scene;
-    parian_renderer *made, *old = app->renderer;
+    parian_renderer *made = NULL, *old = app->renderer;
     parian_result result = parian_renderer_create(app->env, scene, &desc, &made);
+    if (result == PARIAN_OK) {
+        result = upload(app, made);
+    }
     if (result != PARIAN_OK) {
+        parian_renderer_destroy(made);
         parian_scene_close(scene);
         return result;
     }

@@ -33,7 +33,10 @@ typedef struct parian_view_app {
     double aspect; /* width over height of the picture, for the first framing */
     parian_renderer *renderer;
     void *(*get_proc_address)(const char *name); /* NULL: the C evaluation */
-    parian_settings settings;                    /* the view comes from the display */
+    /* Called between slices of an upload with the share that is done; may be NULL. */
+    void (*on_upload)(void *user, double fraction);
+    void *on_upload_user;
+    parian_settings settings; /* the view comes from the display */
     parian_view_display display;
     bool exposure_auto;
     float exposure_ev;

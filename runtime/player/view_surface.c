@@ -130,16 +130,17 @@ void parian_view_surface_show(const parian_view_surface *surface, uint32_t x, ui
                               uint32_t height)
 {
     static const GLfloat grey[4] = {0.06f, 0.06f, 0.06f, 1};
-    const GLint across = (GLint)surface->width, up = (GLint)surface->height, left = (GLint)x;
+    const GLint left = (GLint)x, right = (GLint)width, top = (GLint)height;
     surface->BindFramebuffer(GL_FRAMEBUFFER, 0);
-    surface->Viewport(0, 0, (GLsizei)width, (GLsizei)height);
+    surface->Viewport(0, 0, right, top);
     surface->ClearBufferfv(GL_COLOR, 0, grey);
-    if (surface->width + x != width || surface->height != height) {
+    if (surface->width == 0) {
         return;
     }
     surface->BindFramebuffer(GL_READ_FRAMEBUFFER, surface->framebuffer);
-    surface->BlitFramebuffer(0, 0, across, up, left, 0, left + across, up, GL_COLOR_BUFFER_BIT,
-                             GL_NEAREST);
+    surface->BlitFramebuffer(0, 0, (GLint)surface->width, (GLint)surface->height, left, 0, right,
+                             top, GL_COLOR_BUFFER_BIT,
+                             surface->width + x == width ? GL_NEAREST : GL_LINEAR);
     surface->BindFramebuffer(GL_READ_FRAMEBUFFER, 0);
 }
 

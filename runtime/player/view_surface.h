@@ -27,8 +27,8 @@ void parian_view_surface_resize(parian_view_surface *surface, uint32_t width, ui
 uint32_t parian_view_surface_framebuffer(const parian_view_surface *surface);
 /* Replace the picture: [height * width], rows from top to bottom; a scratch of its size is made. */
 parian_result parian_view_surface_upload(parian_view_surface *surface, const uint8_t (*srgb)[4]);
-/* Copy it to a window of width x height pixels, right of column x; dark grey where there is no
- * picture. */
+/* Copy it to a window of width x height pixels, right of column x, stretched where it is smaller;
+ * dark grey where there is no picture. */
 void parian_view_surface_show(const parian_view_surface *surface, uint32_t x, uint32_t width,
                               uint32_t height);
 /* Read the window as it is, before the buffers are swapped: [height * width], rows from top to

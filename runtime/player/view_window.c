@@ -4,6 +4,7 @@
  */
 #include "view_window.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -19,6 +20,8 @@
 #endif
 
 enum { TITLE_MAX = 200, SETTLE_FRAMES = 3 };
+enum { COARSEST = 4 };
+static const double SMOOTH_MS = 60, REST_S = 0.2; /* of a picture while things move */
 static const double WAIT_S = 0.1, LOOK_S = 0.5, PROGRESS_WAIT_S = 0.03;
 
 typedef struct view_window {
@@ -34,7 +37,10 @@ typedef struct view_window {
     bool reopening;                   /* the same file again, or another one */
     unsigned line_count;              /* of the relay, as of the last line shown */
     double next_look;
-    double start; /* of the program's window, seconds */
+    bool moving, coarse; /* within REST_S of a change; the picture is not in full */
+    double last_change;  /* seconds */
+    double shade_ms;     /* of a picture in full */
+    double start;        /* of the program's window, seconds */
     unsigned saved;
 #ifdef PARIAN_WITH_IMGUI
     parian_panel *panel;
@@ -141,13 +147,27 @@ static void note_times(view_window *view, double ms)
     state->pictures++;
 }
 
+/* Pixels of the window along a side of one of the picture's: 1, or more while things move and a
+ * full picture would take longer than the eye allows. Asked for again at rest. */
+static uint32_t choose_coarseness(const view_window *view)
+{
+    const bool alone = view->app->options->frames || view->state.pictures == 0 ||
+                       parian_view_display_is_atlas(view->app->display) ||
+                       view->app->display == PARIAN_DISPLAY_ERROR;
+    const double side = alone || !view->moving ? 1 : ceil(sqrt(view->shade_ms / SMOOTH_MS));
+    return (uint32_t)fmin(fmax(side, 1), COARSEST);
+}
+
 /* The picture alone, to stay in the surface. */
 static parian_result draw_picture(view_window *view)
 {
     parian_view_app *app = view->app;
     parian_view_state *state = &view->state;
-    const uint32_t width = picture_width(view), height = (uint32_t)view->glfw.height;
+    const uint32_t side = choose_coarseness(view);
+    const uint32_t width = (picture_width(view) + side - 1) / side;
+    const uint32_t height = ((uint32_t)view->glfw.height + side - 1) / side;
     const double start = parian_seconds();
+    const bool relit = state->lights_stale;
     parian_result result = state->lights_stale ? parian_view_app_send_lights(app) : PARIAN_OK;
     state->lights_stale = state->picture_stale = false;
     parian_view_surface_resize(view->surface, width, height);
@@ -159,7 +179,12 @@ static parian_result draw_picture(view_window *view)
         result = parian_view_surface_upload(view->surface, (const uint8_t(*)[4])app->picture.srgb);
     }
     if (result == PARIAN_OK) {
-        note_times(view, 1e3 * (parian_seconds() - start));
+        const double ms = 1e3 * (parian_seconds() - start);
+        view->coarse = side > 1;
+        if (side == 1 && !relit && state->pictures > 0) {
+            view->shade_ms = ms; /* the first picture also builds the shaders */
+        }
+        note_times(view, ms);
         show_title(view);
     }
     return result;
@@ -194,7 +219,7 @@ static parian_result present(view_window *view)
     parian_view_surface_show(view->surface, picture_left(view), (uint32_t)view->glfw.width,
                              (uint32_t)view->glfw.height);
     parian_result result = draw_over(view);
-    if (result == PARIAN_OK && view->state.requests.save_window) {
+    if (result == PARIAN_OK && view->state.requests.save_window && !view->coarse) {
         save_window(view);
     }
     glfwSwapBuffers(view->glfw.window);
@@ -264,10 +289,12 @@ static parian_result answer_requests(view_window *view)
         result = parian_view_app_frame(view->app, aspect(view));
         view->state.picture_stale = true;
     }
-    if (requests->save_picture && view->state.pictures && !view->state.picture_stale) {
+    const bool ready = view->state.pictures && !view->state.picture_stale && !view->coarse;
+    if (requests->save_picture && ready) {
         save_picture(view);
     }
-    *requests = (parian_view_requests){.save_window = requests->save_window};
+    *requests = (parian_view_requests){.save_window = requests->save_window,
+                                       .save_picture = requests->save_picture && !ready};
     return result;
 }
 
@@ -362,6 +389,12 @@ static parian_result show_progress(view_window *view, const char *stage, double 
     return result;
 }
 
+static void on_upload(void *user, double fraction)
+{
+    glfwPollEvents();
+    show_progress(user, "upload", fraction);
+}
+
 /* Keep the window alive until the asset is open. */
 static parian_result wait_for_asset(view_window *view, parian_scene **scene)
 {
@@ -385,10 +418,13 @@ static parian_result open_first(view_window *view)
     parian_view_watch_begin(&view->watch, view->asset);
     parian_result result = wait_for_asset(view, &scene);
     if (result == PARIAN_OK) {
-        show_progress(view, "upload", 1);
+        view->app->on_upload = on_upload;
+        view->app->on_upload_user = view;
+        show_progress(view, "upload", 0);
         parian_view_state_lay_out(&view->state);
         view->app->aspect = aspect(view);
         result = parian_view_app_adopt(view->app, scene, false);
+        view->app->on_upload = NULL;
     }
     if (result == PARIAN_OK) {
         view->watching = true;
@@ -398,6 +434,20 @@ static parian_result open_first(view_window *view)
         parian_view_relay_set_soft(&view->relay, true);
     }
     return result;
+}
+
+/* A change begins or goes on; a while after the last one a coarse picture is drawn in full. */
+static void refine_at_rest(view_window *view)
+{
+    parian_view_state *state = &view->state;
+    const double now = parian_seconds();
+    if (state->picture_stale) {
+        view->moving = now - view->last_change < REST_S || view->shade_ms > SMOOTH_MS;
+        view->last_change = now;
+    } else if (view->coarse && now - view->last_change > REST_S) {
+        view->moving = false;
+        state->picture_stale = true;
+    }
 }
 
 /* ---- the loop ----------------------------------------------------------------------------------
@@ -416,6 +466,7 @@ static parian_result step(view_window *view)
     result = take_loaded(view);
     look_for_changes(view);
     parian_view_state_lay_out(state);
+    refine_at_rest(view);
     const bool seen = view->glfw.width > 0 && view->glfw.height > 0;
     if (result == PARIAN_OK && seen && (state->picture_stale || view->glfw.settle > 0)) {
         view->glfw.settle = view->glfw.settle > 0 ? view->glfw.settle - 1 : 0;
