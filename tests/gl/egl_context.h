@@ -13,6 +13,7 @@
 typedef struct test_egl {
     EGLDisplay display;
     EGLContext context;
+    bool es;
 } test_egl;
 
 /* Make a debug context current; false where this machine cannot. */
@@ -40,6 +41,7 @@ static inline bool test_egl_open(test_egl *egl, bool es)
         (PFNEGLGETPLATFORMDISPLAYEXTPROC)eglGetProcAddress("eglGetPlatformDisplayEXT");
     EGLConfig config;
     EGLint count = 0;
+    egl->es = es;
     egl->context = EGL_NO_CONTEXT;
     egl->display = get_display
                        ? get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL)
@@ -55,9 +57,17 @@ static inline bool test_egl_open(test_egl *egl, bool es)
            eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context);
 }
 
+/* Make it current again, after another one was. */
+static inline bool test_egl_use(const test_egl *egl)
+{
+    return eglBindAPI(egl->es ? EGL_OPENGL_ES_API : EGL_OPENGL_API) &&
+           eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context);
+}
+
 static inline void test_egl_close(test_egl *egl)
 {
     if (egl->context != EGL_NO_CONTEXT) {
+        eglBindAPI(egl->es ? EGL_OPENGL_ES_API : EGL_OPENGL_API);
         eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         eglDestroyContext(egl->display, egl->context);
     }
