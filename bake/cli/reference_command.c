@@ -212,7 +212,11 @@ int parian_reference_command(int argc, char **argv)
         return parian_result_exit_status(r);
     }
     const parian_env *env = parian_session_env(session);
+    bool is_new = access(options.output, F_OK) != 0;
     r = options.planar ? parian_planar_command(env, &options) : run_scene(env, &run);
+    if (r != PARIAN_OK && is_new) {
+        rmdir(options.output); /* if it is empty: a checkpoint stays */
+    }
     run_free(env, &run);
     parian_session_end_progress(session);
     int status = parian_session_exit(session, r);

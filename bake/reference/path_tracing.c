@@ -19,7 +19,7 @@ enum {
     GRID_MOST = 192,
     GRID_PER_FLIGHT = 4, /* voxels per mean free path */
     SAMPLES_DEFAULT = 1024,
-    IRRADIANCE_SAMPLES = 256, /* for E of a light of extent */
+    IRRADIANCE_SAMPLES = 1024, /* for E of a light of extent, as in a quadrature */
     PILOT_WALKS = 32,
     PILOT_FEWEST = 8,
     PILOT_SHARE = 16 /* walks of the run for each of the pilot, at least */

@@ -58,14 +58,19 @@ parian_result reference_files_json(reference_files *files, const char *name, cJS
     return r;
 }
 
+void reference_files_forget(const reference_files *files, const char *name)
+{
+    char *path = parian_path_join(files->env, files->folder, name);
+    if (path) {
+        unlink(path);
+    }
+    parian_free(files->env, path);
+}
+
 void reference_files_remove(const reference_files *files)
 {
     for (size_t i = 0; i < files->count; i++) {
-        char *path = parian_path_join(files->env, files->folder, files->name[i]);
-        if (path) {
-            unlink(path);
-        }
-        parian_free(files->env, path);
+        reference_files_forget(files, files->name[i]);
     }
 }
 

@@ -27,6 +27,8 @@ parian_result reference_files_npy(reference_files *files, const char *name, pari
 parian_result reference_files_text(reference_files *files, const char *name, const char *text);
 /* The same for a JSON object, which is deleted; NULL is PARIAN_E_NOMEM. */
 parian_result reference_files_json(reference_files *files, const char *name, cJSON *object);
+/* Remove one file of the folder, if it is there. */
+void reference_files_forget(const reference_files *files, const char *name);
 /* Remove what was written, after a failure. */
 void reference_files_remove(const reference_files *files);
 

@@ -9,6 +9,8 @@
 #include "bake/reference/reference_files.h"
 #include "core/memory.h"
 
+static const char UNSCATTERED[] = "receiver_radiosity_unscattered.npy";
+
 const char *parian_reference_model_name(parian_reference_model model)
 {
     static const char *const name[] = {"dipole", "dipole-flux", "directional", "pbd", "path"};
@@ -26,15 +28,14 @@ static parian_result write_receivers(reference_files *files, const parian_receiv
         parian_element element;
         uint32_t rank;
         const void *data;
-    } arrays[] = {
-        {"receiver_position.npy", PARIAN_ELEMENT_F64, 2, receivers->position},
-        {"receiver_normal.npy", PARIAN_ELEMENT_F64, 2, receivers->smooth_normal},
-        {"receiver_area.npy", PARIAN_ELEMENT_F64, 1, receivers->area},
-        {"receiver_body.npy", PARIAN_ELEMENT_U32, 1, receivers->body},
-        {"receiver_irradiance.npy", PARIAN_ELEMENT_F64, 2, result->irradiance},
-        {"receiver_radiosity.npy", PARIAN_ELEMENT_F64, 2, result->radiosity},
-        {"receiver_standard_error.npy", PARIAN_ELEMENT_F64, 2, result->standard_error},
-        {"receiver_radiosity_unscattered.npy", PARIAN_ELEMENT_F64, 2, result->unscattered}};
+    } arrays[] = {{"receiver_position.npy", PARIAN_ELEMENT_F64, 2, receivers->position},
+                  {"receiver_normal.npy", PARIAN_ELEMENT_F64, 2, receivers->smooth_normal},
+                  {"receiver_area.npy", PARIAN_ELEMENT_F64, 1, receivers->area},
+                  {"receiver_body.npy", PARIAN_ELEMENT_U32, 1, receivers->body},
+                  {"receiver_irradiance.npy", PARIAN_ELEMENT_F64, 2, result->irradiance},
+                  {"receiver_radiosity.npy", PARIAN_ELEMENT_F64, 2, result->radiosity},
+                  {"receiver_standard_error.npy", PARIAN_ELEMENT_F64, 2, result->standard_error},
+                  {UNSCATTERED, PARIAN_ELEMENT_F64, 2, result->unscattered}};
     parian_result r = PARIAN_OK;
     for (size_t i = 0; r == PARIAN_OK && i < sizeof arrays / sizeof *arrays; i++) {
         if (arrays[i].data) {
@@ -154,6 +155,8 @@ parian_result parian_reference_write(const parian_env *env, const char *folder,
     }
     if (r != PARIAN_OK) {
         reference_files_remove(&files);
+    } else if (!result->unscattered) {
+        reference_files_forget(&files, UNSCATTERED); /* that of an earlier run is not of this one */
     }
     return r;
 }

@@ -152,6 +152,8 @@ expect 0 reference "${base[@]}" --model path --receivers 4 --samples 64 --light 
 has_shape "$work/path/receiver_radiosity_unscattered.npy" "4, 3"
 for key in roulette_added roulette_removed lost scattering_events; do contains "$work/path/summary.json" "\"$key\""; done
 [ ! -e "$work/path/checkpoint.bin" ] || fail "a finished run left its checkpoint"
+expect 0 reference "${base[@]}" "${quick[@]}" --light $light -o "$work/path" # a quadrature in the same folder
+[ ! -e "$work/path/receiver_radiosity_unscattered.npy" ] || fail "an array of an earlier run is left"
 printf '\0\0\200?%.0s' 1 2 3 4 5 6 7 8 | npy "$work/one.npy" '<f4' '2, 2, 2'
 expect 0 reference "${base[@]}" --model path --receivers 4 --samples 64 --light $light --field "$work/one.npy" \
     --walk adjoint -o "$work/field"

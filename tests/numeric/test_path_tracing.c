@@ -246,6 +246,31 @@ static void the_better_walk_is_kept(void **state)
     }
 }
 
+/* A lamp of 3 um, and of one channel alone: no walk of the pilot leaves towards it, so that photons
+ * must be taken because they found it at all. They are those of a run that was told to. */
+static void lamps_that_walks_never_find(void **state)
+{
+    (void)state;
+    const parian_light light = {.type = PARIAN_LIGHT_RECT,
+                                .position = {0, 0, 0.008f},
+                                .axis_u = {0, 1.5e-6f, 0},
+                                .axis_v = {1.5e-6f, 0, 0},
+                                .color = {0, 0, 1}};
+    outcome o[2];
+    for (int k = 0; k < 2; k++) {
+        parian_path_desc desc = {.samples = 128,
+                                 .seed = 11,
+                                 .patch = 0.2 * MM,
+                                 .walk = k ? PARIAN_WALK_FORWARD : PARIAN_WALK_AUTO};
+        o[k] = trace_sphere(4 * MM, 12, &path_case_marble, &light, 60, &desc);
+    }
+    assert_true(mean_b(&o[0], 0) == 0 && mean_b(&o[0], 2) > 0);
+    assert_memory_equal(o[0].result.radiosity, o[1].result.radiosity,
+                        o[0].count * sizeof *o[0].result.radiosity);
+    release(&o[0]);
+    release(&o[1]);
+}
+
 /* Mean free path of 10 sides, and none at all, in a box: nearly all goes straight through, a good
  * part of it after reflection inside, which only the photons of the remainder bring. 2 %: patches
  * at the rims of lit places. */
@@ -422,6 +447,7 @@ int main(void)
         cmocka_unit_test(white_furnace),
         cmocka_unit_test(walks_and_photons_agree),
         cmocka_unit_test(the_better_walk_is_kept),
+        cmocka_unit_test(lamps_that_walks_never_find),
         cmocka_unit_test(nearly_clear_bodies),
         cmocka_unit_test(constant_field),
         cmocka_unit_test(layers_in_a_beam),
