@@ -89,20 +89,15 @@ static parian_result check_scene(const parian_env *env, const parian_scene *scen
 
 static parian_result prepare(parian_renderer *renderer)
 {
-    const parian_scene_data *data = &renderer->scene->data;
-    if (!PARIAN_NEW(&renderer->env, renderer->optics, data->body_count)) {
-        return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for %u bodies",
-                           data->body_count);
-    }
-    for (uint32_t b = 0; b < data->body_count; b++) {
-        renderer->optics[b] =
-            parian_body_optics_make(&data->bodies[b].medium, data->bodies[b].fit_fdr);
-    }
     for (int p = 0; p < PARIAN_PASS_COUNT; p++) {
         renderer->pass[p].name = pass_names[p];
     }
     renderer->lights_changed = true;
-    parian_result result = parian_renderer_start_instances(renderer);
+    renderer->edited_from = PARIAN_PASS_SHADE;
+    parian_result result = parian_renderer_start_media(renderer);
+    if (result == PARIAN_OK) {
+        result = parian_renderer_start_instances(renderer);
+    }
     if (result == PARIAN_OK) {
         result = renderer->backend->create(renderer);
     }
@@ -152,6 +147,7 @@ void parian_renderer_destroy(parian_renderer *renderer)
         parian_light_list_free(env, &renderer->lights);
         parian_free(env, renderer->instances);
         parian_free(env, renderer->optics);
+        parian_free(env, renderer->medium);
         parian_frame_memory_trim(&renderer->frame_memory);
         parian_free(&parent, renderer);
     }
@@ -235,17 +231,19 @@ parian_result parian_renderer_relight(parian_renderer *renderer)
     if (!renderer) {
         return PARIAN_E_ARGUMENT;
     }
-    if (!renderer->lights_changed) {
+    parian_pass from = renderer->lights_changed ? PARIAN_PASS_SHADOW : renderer->edited_from;
+    if (from >= PARIAN_PASS_SHADE) {
         return PARIAN_OK;
     }
     parian_frame_memory_tick(&renderer->frame_memory);
     parian_result result = parian_renderer_check_uploaded(renderer);
     if (result == PARIAN_OK) {
-        result = renderer->backend->relight(renderer);
+        result = renderer->backend->relight(renderer, from);
         renderer->picture_stale = true;
     }
     if (result == PARIAN_OK) {
         renderer->lights_changed = false;
+        renderer->edited_from = PARIAN_PASS_SHADE;
     }
     return result;
 }
@@ -293,9 +291,11 @@ parian_result parian_renderer_draw(parian_renderer *renderer, const parian_draw_
                            desc->height, DRAW_SIDE_MAX);
     }
     if (!all_finite(desc->camera.view, 16) || !all_finite(desc->camera.projection, 16) ||
-        !isfinite(desc->exposure_ev) || fabsf(desc->exposure_ev) > 100.0f) {
+        !isfinite(desc->exposure_ev) || fabsf(desc->exposure_ev) > 100.0f ||
+        (unsigned)desc->tone > PARIAN_TONE_REINHARD) {
         return parian_fail(&renderer->env, PARIAN_E_ARGUMENT,
-                           "camera matrices must be finite and the exposure within 100 stops");
+                           "camera matrices must be finite, the exposure within 100 stops and the "
+                           "tone curve a known one");
     }
     if (renderer->settings.view == PARIAN_VIEW_VALUES && !renderer->has_values) {
         return parian_fail(&renderer->env, PARIAN_E_ARGUMENT, "there are no values to paint");

@@ -8,6 +8,7 @@
 #include "core/body.h"
 #include "frame_memory.h"
 #include "lights/light_list.h"
+#include "method/edited_body.h"
 #include "parian/runtime.h"
 #include "placement.h"
 #include "scene_internal.h"
@@ -43,9 +44,12 @@ typedef struct parian_backend_table {
     void (*destroy)(parian_renderer *renderer);
     /* Hold the results of so many instances; after an error those of as many as before. */
     parian_result (*resize)(parian_renderer *renderer, uint32_t instance_count);
-    /* The lights changed: make E, the registers, the local and global part, and their gutters, of
-     * all instances. */
-    parian_result (*relight)(parian_renderer *renderer);
+    /* Make shadow maps, E, the registers, the local and global part, and their gutters, of all
+     * instances, from a pass on: what earlier passes made is still right. */
+    parian_result (*relight)(parian_renderer *renderer, parian_pass from);
+    /* Take over another medium's factors, weights and kernels of one body; edited is then empty.
+     * After PARIAN_E_DEVICE the body's transport is undefined. */
+    parian_result (*edit)(parian_renderer *renderer, uint32_t body, parian_edited_body *edited);
     /* Shade where asked to (else the last linear picture is still right) and tone-map; keeps the
      * pictures. */
     parian_result (*draw)(parian_renderer *renderer, const parian_draw_desc *desc, bool shade);
@@ -81,6 +85,13 @@ typedef struct parian_bounds {
     parian_ball bodies, everything;
 } parian_bounds;
 
+/* The medium that a body has now, and what became of it. */
+typedef struct parian_body_medium {
+    parian_medium medium; /* with the size factor in its coefficients */
+    parian_medium_report report;
+    bool broken; /* an upload failed half-way */
+} parian_body_medium;
+
 extern const parian_backend_table parian_gl_backend, parian_cpu_backend;
 
 enum { PARIAN_RENDERER_NAME_MAX = 256 };
@@ -95,10 +106,12 @@ struct parian_renderer {
     parian_settings settings;
     parian_light_list lights;
     parian_body_optics *optics;  /* [body_count] */
+    parian_body_medium *medium;  /* [body_count] */
     uint32_t instance_count;     /* at least 1 */
     parian_placement *instances; /* [instance_count] */
     parian_bounds bounds;        /* of all instances and the surroundings */
     bool lights_changed;         /* lights or instances, since the last relight */
+    parian_pass edited_from;     /* first pass that an edit made stale; PARIAN_PASS_SHADE: none */
     bool has_values;             /* to paint on the bodies */
     bool timing;
     double pass_start;
@@ -133,6 +146,9 @@ parian_result parian_renderer_check_uploaded(const parian_renderer *renderer);
 /* Distance by which a shaded point is lifted along its normal before shadow look-ups, metres,
  * beyond what the shadow texel asks for; scale: of its instance, 1 for surroundings. */
 float parian_renderer_shadow_lift(const parian_renderer *renderer, float scale);
+
+/* renderer_medium.c: media and optics as baked. Errors: PARIAN_E_NOMEM. */
+parian_result parian_renderer_start_media(parian_renderer *renderer);
 
 /* renderer_instances.c: one instance where the file has it. Errors: PARIAN_E_NOMEM. */
 parian_result parian_renderer_start_instances(parian_renderer *renderer);

@@ -22,6 +22,7 @@ enum { REGISTER_MAX = 2 * PARIAN_MAX_OPERATORS };
 typedef struct cpu_body {
     parian_kernels kernels;
     parian_restriction restriction;
+    parian_edited_body edited; /* empty unless another medium than the baked one is in force */
     float (*normal)[4], (*albedo)[4], (*values)[4]; /* atlases, or NULL */
 } cpu_body;
 
@@ -46,6 +47,7 @@ static void destroy_body(const parian_env *env, cpu_body *made)
 {
     parian_kernels_free(env, &made->kernels);
     parian_restriction_free(env, &made->restriction);
+    parian_edited_body_free(env, &made->edited);
     parian_free(env, made->normal);
     parian_free(env, made->albedo);
     parian_free(env, made->values);
@@ -275,6 +277,13 @@ static void run_gutter(parian_renderer *renderer, const pass_body *one)
     parian_atlas_fill(one->data, (const float(*)[3])one->lit->global, 0, area, one->atlas->global);
 }
 
+/* A body with the factors that are in force. */
+static const parian_body *body_now(const parian_renderer *renderer, uint32_t b)
+{
+    const cpu_body *made = &((const cpu_state *)renderer->state)->body[b];
+    return made->edited.owned ? &made->edited.body : &renderer->scene->data.bodies[b];
+}
+
 static void run_all(parian_renderer *renderer, void (*run)(parian_renderer *, const pass_body *))
 {
     cpu_state *state = renderer->state;
@@ -283,7 +292,7 @@ static void run_all(parian_renderer *renderer, void (*run)(parian_renderer *, co
         const uint32_t b = i % count;
         const pass_body one = {&renderer->instances[i / count],
                                &renderer->optics[b],
-                               &renderer->scene->data.bodies[b],
+                               body_now(renderer, b),
                                &state->body[b],
                                &state->lit[i],
                                &state->atlas[i]};
@@ -291,10 +300,8 @@ static void run_all(parian_renderer *renderer, void (*run)(parian_renderer *, co
     }
 }
 
-static parian_result cpu_relight(parian_renderer *renderer)
+static parian_result run_shadow(parian_renderer *renderer)
 {
-    static void (*const passes[])(parian_renderer *, const pass_body *) = {
-        run_irradiance, run_restrict, run_product, run_filter, run_gutter};
     cpu_state *state = renderer->state;
     state->lights.list = &renderer->lights;
     state->lights.lift = parian_renderer_shadow_lift(renderer, 1.0f);
@@ -302,15 +309,50 @@ static parian_result cpu_relight(parian_renderer *renderer)
     parian_result result =
         parian_cpu_shadow(&renderer->env, &renderer->scene->data, renderer->instances,
                           renderer->instance_count, &state->lights);
+    if (result == PARIAN_OK) {
+        parian_renderer_end_pass(renderer, PARIAN_PASS_SHADOW);
+    }
+    return result;
+}
+
+static parian_result cpu_relight(parian_renderer *renderer, parian_pass from)
+{
+    static void (*const passes[])(parian_renderer *, const pass_body *) = {
+        run_irradiance, run_restrict, run_product, run_filter, run_gutter};
+    if (from == PARIAN_PASS_SHADOW) {
+        parian_result result = run_shadow(renderer);
+        if (result != PARIAN_OK) {
+            return result;
+        }
+        from = PARIAN_PASS_IRRADIANCE;
+    }
+    for (parian_pass p = from; p <= PARIAN_PASS_GUTTER; p++) {
+        parian_renderer_begin_pass(renderer);
+        run_all(renderer, passes[p - PARIAN_PASS_IRRADIANCE]);
+        parian_renderer_end_pass(renderer, p);
+    }
+    return PARIAN_OK;
+}
+
+/* ---- medium ---- */
+
+static parian_result cpu_edit(parian_renderer *renderer, uint32_t body, parian_edited_body *edited)
+{
+    const parian_env *env = &renderer->env;
+    cpu_body *made = &((cpu_state *)renderer->state)->body[body];
+    parian_restriction restriction;
+    parian_result result = parian_restriction_build(env, &edited->body, &restriction);
     if (result != PARIAN_OK) {
         return result;
     }
-    parian_renderer_end_pass(renderer, PARIAN_PASS_SHADOW);
-    for (int p = 0; p < 5; p++) {
-        parian_renderer_begin_pass(renderer);
-        run_all(renderer, passes[p]);
-        parian_renderer_end_pass(renderer, (parian_pass)(PARIAN_PASS_IRRADIANCE + p));
-    }
+    parian_restriction_free(env, &made->restriction);
+    parian_kernels_free(env, &made->kernels);
+    parian_edited_body_free(env, &made->edited);
+    made->restriction = restriction;
+    made->kernels = edited->kernels;
+    made->edited = *edited;
+    memset(&made->edited.kernels, 0, sizeof made->edited.kernels);
+    memset(edited, 0, sizeof *edited);
     return PARIAN_OK;
 }
 
@@ -379,7 +421,8 @@ static parian_result cpu_draw(parian_renderer *renderer, const parian_draw_desc 
     const float(*picture)[4] = (const float(*)[4])state->picture;
     bool plain = parian_view_is_plain(renderer->settings.view);
     float exposure = desc->exposure_auto ? parian_cpu_exposure(picture, count) : 1.0f;
-    parian_cpu_tone(picture, count, exposure * exp2f(desc->exposure_ev), plain, state->srgb);
+    parian_cpu_tone(picture, count, exposure * exp2f(desc->exposure_ev), desc->tone, plain,
+                    state->srgb);
     parian_renderer_end_pass(renderer, PARIAN_PASS_TONE);
     return PARIAN_OK;
 }
@@ -450,6 +493,7 @@ const parian_backend_table parian_cpu_backend = {
     .destroy = cpu_destroy,
     .resize = cpu_resize,
     .relight = cpu_relight,
+    .edit = cpu_edit,
     .draw = cpu_draw,
     .read_picture = cpu_read_picture,
     .read_texels = cpu_read_texels,

@@ -236,9 +236,10 @@ static float exit_factor(const parian_shade_desc *desc, uint32_t b, float n_v, i
         return 1.0f / (float)M_PI;
     }
     if (desc->settings->view == PARIAN_VIEW_OPAQUE) {
-        return optics->albedo[channel] / (float)M_PI;
+        return optics->tint[channel] * optics->albedo[channel] / (float)M_PI;
     }
-    return parian_fresnel_transmittancef(n_v, optics->eta) / ((float)M_PI * optics->exit_norm);
+    return optics->tint[channel] * parian_fresnel_transmittancef(n_v, optics->eta) /
+           ((float)M_PI * optics->exit_norm);
 }
 
 /* at: p, smooth and v are set. */

@@ -78,8 +78,8 @@ static float encode(float linear)
     return x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1.0f / 2.4f) - 0.055f;
 }
 
-void parian_cpu_tone(const float (*picture)[4], size_t count, float exposure, bool plain,
-                     uint8_t (*srgb)[4])
+void parian_cpu_tone(const float (*picture)[4], size_t count, float exposure, parian_tone tone,
+                     bool plain, uint8_t (*srgb)[4])
 {
     for (size_t i = 0; i < count; i++) {
         float rgb[3] = {picture[i][0], picture[i][1], picture[i][2]};
@@ -88,7 +88,11 @@ void parian_cpu_tone(const float (*picture)[4], size_t count, float exposure, bo
             for (int c = 0; c < 3; c++) {
                 rgb[c] = fminf(rgb[c], 1e6f);
             }
-            neutral_curve(rgb);
+            if (tone == PARIAN_TONE_NEUTRAL) {
+                neutral_curve(rgb);
+            } else if (tone == PARIAN_TONE_REINHARD) {
+                vec3_scale(rgb, 1.0f / (1.0f + fmaxf(luminance(rgb), 0.0f)));
+            }
         }
         for (int c = 0; c < 3; c++) {
             srgb[i][c] = (uint8_t)(encode(rgb[c]) * 255.0f + 0.5f);

@@ -9,6 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "parian/runtime.h"
+
 /* Mean of `side` x `side` samples for each pixel: samples [height * side][width * side]. */
 void parian_cpu_resolve(const float (*samples)[4], uint32_t width, uint32_t height, uint32_t side,
                         float (*picture)[4]);
@@ -19,7 +21,7 @@ float parian_cpu_exposure(const float (*picture)[4], size_t count);
 
 /* 8-bit sRGB after exposure and tone curve; plain: neither, the values are clamped.
  * Source  [KhronosPbrNeutral] */
-void parian_cpu_tone(const float (*picture)[4], size_t count, float exposure, bool plain,
-                     uint8_t (*srgb)[4]);
+void parian_cpu_tone(const float (*picture)[4], size_t count, float exposure, parian_tone tone,
+                     bool plain, uint8_t (*srgb)[4]);
 
 #endif

@@ -213,32 +213,59 @@ static void end_pass(parian_renderer *renderer, parian_pass pass)
     parian_renderer_end_pass(renderer, pass);
 }
 
-static parian_result run_relight(parian_renderer *renderer)
+static parian_result run_shadow(parian_renderer *renderer)
 {
-    static void (*const passes[])(parian_renderer *) = {
-        gl_irradiance_run, gl_restrict_run, gl_product_run, gl_filter_run, gl_gutter_run};
     parian_result result = gl_lights_upload(renderer);
     parian_renderer_begin_pass(renderer);
     if (result == PARIAN_OK) {
         result = gl_shadow_run(renderer);
     }
-    if (result != PARIAN_OK) {
-        return result;
+    if (result == PARIAN_OK) {
+        end_pass(renderer, PARIAN_PASS_SHADOW);
     }
-    end_pass(renderer, PARIAN_PASS_SHADOW);
-    for (int p = 0; p < 5; p++) {
+    return result;
+}
+
+static parian_result run_relight(parian_renderer *renderer, parian_pass from)
+{
+    static void (*const passes[])(parian_renderer *) = {
+        gl_irradiance_run, gl_restrict_run, gl_product_run, gl_filter_run, gl_gutter_run};
+    if (from == PARIAN_PASS_SHADOW) {
+        parian_result result = run_shadow(renderer);
+        if (result != PARIAN_OK) {
+            return result;
+        }
+        from = PARIAN_PASS_IRRADIANCE;
+    }
+    for (parian_pass p = from; p <= PARIAN_PASS_GUTTER; p++) {
         parian_renderer_begin_pass(renderer);
-        passes[p](renderer);
-        end_pass(renderer, (parian_pass)(PARIAN_PASS_IRRADIANCE + p));
+        passes[p - PARIAN_PASS_IRRADIANCE](renderer);
+        end_pass(renderer, p);
     }
     return PARIAN_OK;
 }
 
-static parian_result gl_relight(parian_renderer *renderer)
+static parian_result gl_relight(parian_renderer *renderer, parian_pass from)
 {
     gl_state *state = renderer->state;
     gl_device_enter(&state->device);
-    return gl_device_leave(&state->device, run_relight(renderer), "relit");
+    return gl_device_leave(&state->device, run_relight(renderer, from), "relit");
+}
+
+/* ---- medium ---- */
+
+static parian_result gl_edit(parian_renderer *renderer, uint32_t body, parian_edited_body *edited)
+{
+    gl_state *state = renderer->state;
+    gl_upload_list list = {.env = &renderer->env};
+    gl_body_source source;
+    gl_device_enter(&state->device);
+    parian_result result = gl_body_edit(edited, &source, &state->body[body], &list);
+    if (result == PARIAN_OK) {
+        result = gl_upload_run(&state->device, &list, UINT64_MAX);
+    }
+    gl_upload_list_free(&list);
+    return gl_device_leave(&state->device, result, "took in another medium");
 }
 
 static parian_result gl_draw(parian_renderer *renderer, const parian_draw_desc *desc, bool shade)
@@ -377,6 +404,7 @@ const parian_backend_table parian_gl_backend = {
     .destroy = gl_destroy,
     .resize = gl_resize,
     .relight = gl_relight,
+    .edit = gl_edit,
     .draw = gl_draw,
     .read_picture = gl_read_picture,
     .read_texels = gl_read_texels,

@@ -294,6 +294,41 @@ void gl_body_plan(const parian_body *body, gl_body_source *source, gl_body *made
     }
 }
 
+/* The kernels of an edited body are its own: nothing is made or dropped. */
+static void edit_kernels(gl_upload_list *list, const gl_body_source *source, gl_body *made)
+{
+    const parian_memory_part part = PARIAN_MEMORY_KERNELS;
+    const parian_body *body = source->body;
+    uint64_t taps = (uint64_t)body->kernel_width * body->kernel_width;
+    memcpy(made->channel_scale, source->kernels.channel_scale, sizeof made->channel_scale);
+    gl_upload_texture(list, part, &made->kernel, made->interior_count * taps, copy_planes, source);
+    if (body->border_count) {
+        gl_upload_texture(list, part, &made->border_kernel, body->border_offset[body->border_count],
+                          copy_border_kernels, source);
+    }
+}
+
+parian_result gl_body_edit(const parian_edited_body *edited, gl_body_source *source, gl_body *made,
+                           gl_upload_list *list)
+{
+    const parian_body *body = &edited->body;
+    const gl_preparation restriction = {make_restriction, drop_restriction, source};
+    *source = (gl_body_source){.body = body, .made = made, .kernels = edited->kernels};
+    if (body->blend_weight) {
+        gl_upload_prepare_begin(list, restriction);
+        gl_upload_texture(list, PARIAN_MEMORY_FACTORS, &made->feed_weight,
+                          3 * (uint64_t)body->texel_count, copy_feed_weights, source);
+        gl_upload_prepare_end(list);
+    }
+    if (body->local_form != PARIAN_LOCAL_NONE) {
+        edit_kernels(list, source, made);
+    }
+    for (uint32_t o = 0; o < body->operator_count; o++) {
+        gl_operator_edit(&body->operators[o], &made->operators[o], list);
+    }
+    return gl_upload_plan_end(list);
+}
+
 parian_result gl_body_set_values(gl_device *device, const parian_body *body,
                                  const float (*value)[3], gl_body *made)
 {

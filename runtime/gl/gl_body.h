@@ -65,6 +65,10 @@ typedef struct gl_body_source {
 /* Describe all textures of a body and add the jobs that fill them. Needs no GL. */
 void gl_body_plan(const parian_body *body, gl_body_source *source, gl_body *made,
                   gl_upload_list *list);
+/* Jobs that write an edited body's weights, kernels, factors and scales over those that are there.
+ */
+parian_result gl_body_edit(const parian_edited_body *edited, gl_body_source *source, gl_body *made,
+                           gl_upload_list *list);
 /* Values to paint on the body, [texel_count]. */
 parian_result gl_body_set_values(gl_device *device, const parian_body *body,
                                  const float (*value)[3], gl_body *made);
@@ -90,6 +94,8 @@ void gl_mesh_draw(gl_device *device, const gl_mesh *mesh);
 
 void gl_operator_plan(const parian_operator *op, gl_operator_source *source, gl_operator *made,
                       gl_upload_list *list);
+/* Jobs that write another operator with the same runs over one that is there. */
+void gl_operator_edit(const parian_operator *op, gl_operator *made, gl_upload_list *list);
 void gl_operator_destroy(gl_device *device, gl_operator *made);
 
 #endif

@@ -118,6 +118,13 @@ void gl_operator_plan(const parian_operator *op, gl_operator_source *source, gl_
     gl_upload_target(list, part, &made->partial);
 }
 
+void gl_operator_edit(const parian_operator *op, gl_operator *made, gl_upload_list *list)
+{
+    const parian_memory_part part = PARIAN_MEMORY_FACTORS;
+    gl_upload_texture(list, part, &made->factor, op->factor_total, NULL, op->factor);
+    gl_upload_texture(list, part, &made->scale, op->row_count, copy_scales, op);
+}
+
 void gl_operator_destroy(gl_device *device, gl_operator *made)
 {
     gl_texture_destroy(device, &made->segment);

@@ -165,6 +165,7 @@ static void draw_body(const parian_renderer *renderer, uint32_t instance, uint32
     gl_pass_float(device, "u_alpha", fmaxf(roughness * roughness, 1e-3f));
     gl_pass_float(device, "u_eta", optics->eta);
     gl_pass_float(device, "u_exit_norm", optics->exit_norm);
+    gl_pass_vec3(device, "u_tint", 1, optics->tint);
     gl_pass_vec3(device, "u_total", 1, optics->albedo);
     gl_mesh_draw(device, &body->mesh);
 }
@@ -248,6 +249,7 @@ static void set_tone(const parian_renderer *renderer, const parian_draw_desc *de
     gl_pass_texture(device, "u_logs", &state->picture.logs);
     gl_pass_int(device, "u_auto", desc->exposure_auto ? 1 : 0);
     gl_pass_int(device, "u_plain", parian_view_is_plain(renderer->settings.view));
+    gl_pass_int(device, "u_tone", (int)desc->tone);
     gl_pass_float(device, "u_exposure", exp2f(desc->exposure_ev));
     gl_pass_quad(device);
 }

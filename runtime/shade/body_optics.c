@@ -24,7 +24,7 @@ static double transmit_moment(double eta, int l)
 
 parian_body_optics parian_body_optics_make(const parian_medium *medium, bool fit_fdr)
 {
-    parian_body_optics optics = {.eta = (float)medium->eta};
+    parian_body_optics optics = {.eta = (float)medium->eta, .tint = {1, 1, 1}};
     optics.exit_norm = (float)parian_fresnel_exit_norm(medium->eta);
     for (int l = 0; l < 3; l++) {
         optics.zonal_transmit[l] = (float)(2.0 * PARIAN_PI * transmit_moment(medium->eta, l));

@@ -16,6 +16,7 @@ uniform int u_specular;
 uniform float u_alpha;     // GGX roughness
 uniform float u_eta;
 uniform float u_exit_norm;
+uniform vec3 u_tint;       // of what scatters out
 uniform vec3 u_total;      // albedo of the opaque twin
 uniform mat4 u_model;      // of the instance
 uniform vec4 u_eye;        // position and 1, or direction and 0
@@ -126,9 +127,9 @@ void main()
     }
     vec3 factor = vec3(1.0 / PI);
     if (u_view == VIEW_OPAQUE) {
-        factor *= u_total;
+        factor *= u_total * u_tint;
     } else if (u_view != VIEW_IRRADIANCE && u_view != VIEW_RADIOSITY) {
-        factor *= fresnel_transmit(n_v, u_eta) / u_exit_norm;
+        factor *= u_tint * (fresnel_transmit(n_v, u_eta) / u_exit_norm);
     }
     o_radiance.rgb = max(scattered() * factor, 0.0);
     if (u_specular != 0) {

@@ -1,9 +1,10 @@
-// tone.glsl - exposure, a neutral tone curve, sRGB. C: cpu/cpu_tone.c.
+// tone.glsl - exposure, tone curve, sRGB. C: cpu/cpu_tone.c.
 // SPDX-License-Identifier: MIT
 uniform sampler2D u_picture;
 uniform sampler2D u_mean;  // sum of luminance, coverage
 uniform sampler2D u_logs;  // sum of logarithms, coverage
 uniform int u_auto, u_plain;
+uniform int u_tone; // parian_tone
 uniform float u_exposure;
 layout(location = 0) out vec4 o_srgb;
 
@@ -40,7 +41,12 @@ void main()
         if (u_auto != 0 && mean.x > 0.0 && mean.y > 0.0) {
             exposure *= 0.18 / exp(logs.x / logs.y);
         }
-        picture.rgb = neutral_curve(min(picture.rgb * exposure, 1e6));
+        picture.rgb = min(picture.rgb * exposure, 1e6);
+        if (u_tone == 0) {
+            picture.rgb = neutral_curve(picture.rgb);
+        } else if (u_tone == 2) {
+            picture.rgb /= 1.0 + max(dot(picture.rgb, vec3(0.2126, 0.7152, 0.0722)), 0.0);
+        }
     }
     o_srgb = vec4(encode(picture.rgb), clamp(picture.a, 0.0, 1.0));
 }

@@ -156,6 +156,53 @@ parian_result parian_renderer_set_settings(parian_renderer *renderer, const pari
  * that view without values is PARIAN_E_ARGUMENT. Errors: PARIAN_E_NOMEM, PARIAN_E_DEVICE. */
 parian_result parian_renderer_set_values(parian_renderer *renderer, const float (*value)[3]);
 
+/* ---- medium edits ----------------------------------------------------------------------------------
+ * A body can be given another medium, size or colour than it was baked of. Surface, atlas and the pairs of
+ * vertices that exchange light stay those of the asset; everything else is computed anew, in seconds on
+ * threads through the env. What could not follow is reported, with the error it costs. */
+typedef struct parian_medium_edit { /* zero is default: as baked */
+    float tint[3];       /* B times this when it is shown, apart from transfer, 0 to 10; all zero takes 1,1,1 */
+    bool change_medium;  /* take these coefficients: */
+    double sigma_s_prime[3], sigma_a[3]; /* m^-1 */
+    double eta;          /* 1 to 4; 0: as baked */
+    double size_factor;  /* the body, and everything around it, is that many times as large as it was baked and
+                          * is still shown at its old size, 0.001 to 1000; 0 takes 1 */
+} parian_medium_edit;
+
+typedef enum parian_edit_part { /* bits */
+    PARIAN_EDIT_TINT = 1,
+    PARIAN_EDIT_OPTICS = 2,       /* Fresnel at entry and exit, albedo of the opaque view */
+    PARIAN_EDIT_FACTORS = 4,      /* throughput factors at the pairs that the asset holds */
+    PARIAN_EDIT_WEIGHTS = 8,      /* blending weights */
+    PARIAN_EDIT_KERNELS = 16,     /* local kernels */
+    PARIAN_EDIT_REACH = 32,       /* light between pairs that the asset does not hold */
+    PARIAN_EDIT_LOCAL_PART = 64,  /* the body was baked without one, and now needs it */
+    PARIAN_EDIT_GLOBAL_PART = 128 /* the same */
+} parian_edit_part;
+
+typedef struct parian_medium_report {
+    uint32_t exact;       /* parian_edit_part: as a bake of this medium would have them */
+    uint32_t approximate; /* followed, at the price of the errors below */
+    uint32_t missing;     /* could not follow: the picture is wrong by more than 5 % in places */
+    double beyond_mean, beyond_max; /* share of light that belongs between pairs the asset does not hold, and went to
+                                     * others instead: mean and largest over receivers, worst channel */
+    /* Relative L2 error of B against the direct integral of R_d, measured at 256 receivers, worst channel: under
+     * light from afar without shadows, and under a hard-edged checkerboard. 0 where the medium is as baked. */
+    double error_smooth, error_hard;
+    double energy;        /* B over what it should be, both summed, under the first of them; worst channel */
+    double seconds;       /* that the edit took */
+    char text[512];       /* one line for people */
+} parian_medium_report;
+
+/* Edit one body of all instances; edit NULL: as baked. Replaces an earlier edit. The next draw or relight runs the
+ * passes that are affected: a tint shading alone, a medium everything after E, an index of refraction E as well.
+ * report may be NULL; what is missing is also logged as a warning. Errors: PARIAN_E_ARGUMENT (no such body, a medium
+ * that cannot be; the line names the number), PARIAN_E_UNSUPPORTED, PARIAN_E_NOMEM, PARIAN_E_INTERRUPTED: the
+ * medium stays what it was; PARIAN_E_DEVICE: the body must be edited again before it is right. Threads: the
+ * context's thread. */
+parian_result parian_renderer_set_medium(parian_renderer *renderer, uint32_t body, const parian_medium_edit *edit,
+                                         parian_medium_report *report);
+
 /* Bring E and B up to date with lights and instances; does nothing when nothing changed. */
 parian_result parian_renderer_relight(parian_renderer *renderer);
 
@@ -168,11 +215,18 @@ typedef struct parian_camera {
     float projection[16];
 } parian_camera;
 
+typedef enum parian_tone {
+    PARIAN_TONE_NEUTRAL = 0, /* identity below 0.76, then a shoulder that keeps hues (Khronos PBR Neutral) */
+    PARIAN_TONE_LINEAR = 1,  /* clamped at 1 */
+    PARIAN_TONE_REINHARD = 2 /* divided by 1 + luminance */
+} parian_tone;
+
 typedef struct parian_draw_desc {
     parian_camera camera;
     uint32_t width, height; /* pixels, 1 to 16384 */
     bool exposure_auto;     /* from the log-average luminance */
     float exposure_ev;      /* picture is scaled by 2^ev before the tone curve (after auto, if on) */
+    parian_tone tone;
     /* GL: framebuffer that receives the tone-mapped sRGB picture (0: the default one); (uint32_t)-1: none. */
     uint32_t framebuffer;
 } parian_draw_desc;
