@@ -242,6 +242,7 @@ static parian_result change_medium(parian_renderer *renderer, uint32_t b,
         parian_edited_body_free(&renderer->env, &edited);
         now->broken = result == PARIAN_E_DEVICE || (now->broken && result != PARIAN_OK);
     }
+    parian_frame_memory_trim(&renderer->frame_memory); /* much was needed that no frame needs */
     if (result != PARIAN_OK) {
         return result;
     }
