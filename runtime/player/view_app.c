@@ -35,7 +35,8 @@ static void choose_exposure(parian_view_app *app)
 static void choose_background(parian_view_app *app)
 {
     const parian_view_options *o = app->options;
-    const bool linear = o->image && parian_view_path_ends(o->image, ".exr");
+    const bool linear = (o->image && parian_view_path_ends(o->image, ".exr")) ||
+                        (app->reference.pixel && !app->reference.encoded);
     const double grey = linear ? 0
                                : BACKGROUND_SHARE * parian_view_lights_brightness(
                                                         &app->lights, app->extent.body_centre);
