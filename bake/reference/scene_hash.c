@@ -7,6 +7,8 @@
 
 #include <xxhash.h>
 
+#include "core/memory.h"
+
 static void add(XXH3_state_t *hash, const void *data, size_t size)
 {
     if (size > 0) {

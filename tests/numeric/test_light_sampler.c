@@ -451,8 +451,10 @@ static void dark_and_uniform_skies(void **state)
 static void lights_without_sense_are_refused(void **state)
 {
     (void)state;
-    static const float bad_pixel[1][3] = {{1, -1, 0}};
+    static const float bad_pixel[1][3] = {{1, -1, 0}}, endless_pixel[1][3] = {{1, INFINITY, 0}};
     const parian_light lights[] = {
+        {.type = PARIAN_LIGHT_SPOT, .direction = {0, 0, 1}, .up = {0, NAN, 0}, .outer_deg = 40},
+        {.type = PARIAN_LIGHT_ENVIRONMENT, .image = {1, 1, endless_pixel}},
         {.type = (parian_light_type)9},
         {.type = PARIAN_LIGHT_POINT, .color = {NAN, 0, 0}},
         {.type = PARIAN_LIGHT_POINT, .position = {INFINITY, 0, 0}},
