@@ -36,13 +36,42 @@ static void add(parian_results *results, const char *bake, const char *lights, d
     }
 }
 
+/* The field of a line (from 0: the names) that stands under a name; empty where there is none. */
+static void field_of(const char *csv, int line, const char *name, char field[64])
+{
+    int column = 0, quoted = 0;
+    const char *at = csv;
+    for (size_t n = strlen(name); strncmp(at, name, n) != 0 || (at[n] != ',' && at[n] != '\n');
+         column++) {
+        at += strcspn(at, ",\n") + 1;
+        assert_true(at < strchr(csv, '\n'));
+    }
+    for (at = csv; line > 0; line--) {
+        at = strchr(at, '\n') + 1;
+    }
+    for (; column > 0; at++) {
+        quoted ^= *at == '"';
+        column -= *at == ',' && !quoted;
+    }
+    snprintf(field, 64, "%.*s", (int)strcspn(at, ",\n"), at);
+}
+
 static void test_csv(void **state)
 {
     (void)state;
     parian_results results = {0};
     parian_text text = {.env = NULL};
     add(&results, "--local split, \"odd\"", "sun", 0.01, 3);
-    results.row[1].bake_s = NAN;
+    parian_measure_row *row = &results.row[1];
+    row->bake_s = NAN;
+    row->vertices = 11;
+    row->texels = 12;
+    row->factors = 13;
+    row->receivers = 14;
+    row->error.truth_error = 0.15;
+    row->irradiance_l2 = 0.16;
+    row->transport_l2 = 0.17;
+    row->error.not_finite = 18;
     parian_results_csv(&results, &text);
     const char *head = "asset,method,lights,reference,channel,l1,l2,energy_ratio,p999,minimum,"
                        "relight_ms,asset_bytes,bake_s,";
@@ -53,6 +82,22 @@ static void test_csv(void **state)
                "0.5,3,1000000,2,ball.ply,"));
     assert_non_null(strstr(
         text.text, ",g,0.01,0.005,0.99,0.1,0.4,3,1000000,,ball.ply,")); /* not known: empty */
+    /* Every field under its name: the second row's values, all different. */
+    static const char *const named[][2] = {{"model", "ball.ply"},
+                                           {"backend", "cpu"},
+                                           {"vertices", "11"},
+                                           {"texels", "12"},
+                                           {"factors", "13"},
+                                           {"receivers", "14"},
+                                           {"truth_standard_error", "0.15"},
+                                           {"irradiance_l2", "0.16"},
+                                           {"transport_l2", "0.17"},
+                                           {"not_finite", "18"}};
+    for (size_t k = 0; k < sizeof named / sizeof *named; k++) {
+        char field[64];
+        field_of(text.text, 2, named[k][0], field);
+        assert_string_equal(field, named[k][1]);
+    }
     /* As many fields in each line as names. */
     size_t lines = 0;
     for (const char *line = text.text; *line; line = strchr(line, '\n') + 1, lines++) {
@@ -92,6 +137,10 @@ static void test_readings(void **state)
     add(&results, "broken", "sun", 0.0001, 0.1);
     results.row[results.count - 1].error.not_finite = 1; /* never chosen */
     add(&results, "coarse", "moon", 0.0001, 0.1);        /* another light set */
+    add(&results, "coarse", "sun", 0.0001, 0.1);         /* another truth */
+    for (size_t i = results.count - 3; i < results.count; i++) {
+        snprintf(results.row[i].reference, sizeof results.row[i].reference, "path");
+    }
     assert_int_equal(parian_results_best_within(&results, 0, 0.4), SIZE_MAX);
     assert_int_equal(parian_results_best_within(&results, 0, 1), 0);
     assert_int_equal(parian_results_best_within(&results, 0, 10), 1);
@@ -103,7 +152,7 @@ static void test_readings(void **state)
     assert_int_equal(parian_results_cheapest_under(&results, 0, 0.02), 1);
     assert_int_equal(parian_results_cheapest_under(&results, 0, 0.05), 0);
     assert_true(parian_measurement_leads(&results, 0) && !parian_measurement_leads(&results, 3));
-    assert_true(parian_measurement_leads(&results, 5));
+    assert_true(parian_measurement_leads(&results, 5) && parian_measurement_leads(&results, 6));
     parian_results_free(NULL, &results);
 }
 
@@ -120,6 +169,9 @@ static void test_tables_fit_a_terminal(void **state)
         assert_true(strcspn(line, "\n") <= 110);
     }
     assert_non_null(strstr(text.text, "12346"));
+    assert_non_null(strstr(text.text, "   12346    1.00    2.0\n")); /* ms, megabytes, seconds */
+    assert_non_null(strstr(
+        text.text, "L2 within 5 %       4.00       0.5     1.00  transfer --quality preview\n"));
     assert_non_null(strstr(text.text, "within 1 ms"));
     parian_free(NULL, text.text);
     parian_results_free(NULL, &results);
