@@ -128,7 +128,7 @@ static parian_result write_map(const parian_env *env, const error_maps *maps, co
                                   .value = value,
                                   .limit = maps->limit,
                                   .is_signed = 1,
-                                  .title = "(B - truth) / mean of the truth"};
+                                  .title = "(B - truth) / mean truth, mean of RGB"};
     return parian_error_map_write(env, maps->folder, name, &map);
 }
 
