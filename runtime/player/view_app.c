@@ -84,6 +84,8 @@ static void use_scene(parian_view_app *app, parian_scene *scene)
     app->info = parian_scene_get_info(scene);
     app->extent = parian_view_extent_of(&app->info);
     app->error_stale = true;
+    memset(app->edit, 0, sizeof app->edit);
+    memset(&app->report, 0, sizeof app->report);
     parian_view_reference_forget(app->env, &app->reference);
 }
 
@@ -209,6 +211,23 @@ parian_result parian_view_app_relight(parian_view_app *app)
     parian_result result = parian_view_app_send_lights(app);
     parian_renderer_invalidate(app->renderer); /* the same lights are timed again and again */
     return result == PARIAN_OK ? parian_renderer_relight(app->renderer) : result;
+}
+
+parian_result parian_view_app_edit(parian_view_app *app, uint32_t body,
+                                   const parian_medium_edit *edit)
+{
+    parian_medium_report report;
+    if (body >= PARIAN_VIEW_EDITS) {
+        return parian_fail(app->env, PARIAN_E_LIMIT, "only the first %d bodies can be edited",
+                           PARIAN_VIEW_EDITS);
+    }
+    parian_result result = parian_renderer_set_medium(app->renderer, body, edit, &report);
+    if (result == PARIAN_OK) {
+        app->edit[body] = *edit;
+        app->report = report;
+        app->error_stale = true;
+    }
+    return result;
 }
 
 parian_result parian_view_app_read_lights(parian_view_app *app, const char *path)

@@ -12,6 +12,8 @@
 #include "view_options.h"
 #include "view_reference.h"
 
+enum { PARIAN_VIEW_EDITS = 64 };
+
 /* A picture that the player made itself: atlases, errors of pictures. [height * width], rows from
  * top to bottom. */
 typedef struct parian_view_picture {
@@ -44,6 +46,8 @@ typedef struct parian_view_app {
     double error_scale, error; /* of the error view: colours over this; relative L2, -1 unknown */
     bool error_stale;          /* B or the scale changed since the error was painted */
     parian_view_picture picture;
+    parian_medium_edit edit[PARIAN_VIEW_EDITS]; /* of the first bodies; zero: as baked */
+    parian_medium_report report;                /* of the last edit; no text before one */
 } parian_view_app;
 
 /* Read lights, camera file and reference. app->env and app->options are set; close in every case.
@@ -66,6 +70,11 @@ parian_result parian_view_app_frame(parian_view_app *app, double aspect);
 parian_result parian_view_app_send_lights(parian_view_app *app);
 /* Force a full relight, and do it. */
 parian_result parian_view_app_relight(parian_view_app *app);
+
+/* Give a body another medium, and keep what it costs in app->report; on failure nothing changes.
+ * Errors: those of parian_renderer_set_medium. */
+parian_result parian_view_app_edit(parian_view_app *app, uint32_t body,
+                                   const parian_medium_edit *edit);
 
 /* Replace the lights by those of a lights file; the old ones stay on failure. */
 parian_result parian_view_app_read_lights(parian_view_app *app, const char *path);

@@ -36,6 +36,7 @@ static void draw_groups(parian_panel *panel, parian_view_state *state)
         parian_view_group_asset(panel, state);
         parian_view_group_view(panel, state);
         parian_view_group_lights(panel, state);
+        parian_view_group_media(panel, state);
         parian_view_group_surface(panel, state);
         parian_view_group_timings(panel, state);
     }
@@ -66,7 +67,7 @@ static void draw_line(parian_panel *panel, const parian_view_state *state)
                                   .bare = true,
                                   .centred = true};
     if (parian_panel_begin_box(panel, &box)) {
-        parian_panel_text(panel, "%s", state->line);
+        parian_panel_wrapped(panel, state->line, (float)state->area_width - 40);
     }
     parian_panel_end_box(panel);
 }

@@ -34,7 +34,7 @@ static void describe_body(parian_panel *panel, const parian_view_state *state, u
                       body.atlas_size, body.chart_count);
     parian_panel_text(panel, "  %u vertices, %.2f million factors", body.vertex_count,
                       1e-6 * (double)body.factor_count);
-    parian_panel_text(panel, "  mean free path %.3g mm, 1/%.0f of the scene", 1e3 * path,
+    parian_panel_text(panel, "  mean free path %.3g mm: 1/%.0f", 1e3 * path,
                       path > 0 ? extent / path : 0);
     if (!body.has_local || !body.has_global) {
         parian_panel_text(panel, "  %s part alone", body.has_local ? "local" : "global");

@@ -15,6 +15,9 @@ void parian_view_group_view(parian_panel *panel, parian_view_state *state);
 void parian_view_group_surface(parian_panel *panel, parian_view_state *state);
 void parian_view_group_timings(parian_panel *panel, parian_view_state *state);
 
+/* view_panel_media.c */
+void parian_view_group_media(parian_panel *panel, parian_view_state *state);
+
 /* view_panel_lights.c */
 void parian_view_group_lights(parian_panel *panel, parian_view_state *state);
 void parian_view_draw_gizmos(parian_panel *panel, parian_view_state *state);

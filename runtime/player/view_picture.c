@@ -6,6 +6,7 @@
 #include "view_picture.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "tool/picture.h"
@@ -33,6 +34,8 @@ static parian_result make_room(parian_view_app *app, uint32_t width, uint32_t he
     return PARIAN_OK;
 }
 
+enum { UNCOVERED = 40 }; /* grey, 8-bit code */
+
 /* The identity below 0.76, then ever flatter towards 1; NaN is 0. */
 static float shoulder(float value)
 {
@@ -47,6 +50,9 @@ static void encode(parian_view_picture *picture, float exposure, bool curve)
         for (int c = 0; c < 3; c++) {
             const float value = exposure * picture->radiance[i][c];
             picture->srgb[i][c] = parian_srgb_encode(curve ? shoulder(value) : value);
+        }
+        if (!(picture->radiance[i][3] > 0)) { /* what is not covered is told from what is dark */
+            memset(picture->srgb[i], UNCOVERED, 3);
         }
         picture->srgb[i][3] = (uint8_t)lrintf(255 * fminf(fmaxf(picture->radiance[i][3], 0), 1));
     }

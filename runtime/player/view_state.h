@@ -14,6 +14,7 @@ enum { PARIAN_VIEW_HISTORY = 120, PARIAN_VIEW_NO_LIGHT = -1, PARIAN_VIEW_PANEL_W
 /* What input and panel ask of the window. */
 typedef struct parian_view_requests {
     bool quit, frame_bodies, save_picture, save_window, list_keys;
+    bool tint, edit_medium, undo_medium; /* of the chosen body, from the draft */
 } parian_view_requests;
 
 typedef struct parian_view_state {
@@ -28,6 +29,9 @@ typedef struct parian_view_state {
     double mouse_x, mouse_y; /* window coordinates */
     int window_width, window_height;
     int area_x, area_width;          /* where the picture is: beside the panel */
+    uint32_t body;                   /* whose medium is edited */
+    parian_medium_edit draft;        /* as shown; computed on request */
+    bool draft_stale, draft_changed; /* to be filled anew; not computed yet */
     char line[PARIAN_VIEW_LINE_MAX]; /* shown at the bottom; empty for none */
     /* Times of the last pictures, a ring: the whole, and of each pass. */
     bool time_passes;

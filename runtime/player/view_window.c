@@ -20,7 +20,7 @@
 #endif
 
 enum { TITLE_MAX = 200, SETTLE_FRAMES = 3 };
-enum { COARSEST = 4 };
+enum { COARSEST = 4, QUICK_PIXELS = 200000 };
 static const double SMOOTH_MS = 60, REST_S = 0.2; /* of a picture while things move */
 static const double WAIT_S = 0.1, LOOK_S = 0.5, PROGRESS_WAIT_S = 0.03;
 
@@ -147,14 +147,18 @@ static void note_times(view_window *view, double ms)
     state->pictures++;
 }
 
-/* Pixels of the window along a side of one of the picture's: 1, or more while things move and a
- * full picture would take longer than the eye allows. Asked for again at rest. */
+/* Pixels of the window along a side of one of the picture's: 1, or more for the very first picture,
+ * and while things move and a full picture would take longer than the eye allows. Asked for again
+ * at rest. */
 static uint32_t choose_coarseness(const view_window *view)
 {
-    const bool alone = view->app->options->frames || view->state.pictures == 0 ||
+    const bool whole = view->app->options->frames ||
                        parian_view_display_is_atlas(view->app->display) ||
                        view->app->display == PARIAN_DISPLAY_ERROR;
-    const double side = alone || !view->moving ? 1 : ceil(sqrt(view->shade_ms / SMOOTH_MS));
+    if (!whole && view->state.pictures == 0) {
+        return (uint64_t)picture_width(view) * (uint64_t)view->glfw.height > QUICK_PIXELS ? 2 : 1;
+    }
+    const double side = whole || !view->moving ? 1 : ceil(sqrt(view->shade_ms / SMOOTH_MS));
     return (uint32_t)fmin(fmax(side, 1), COARSEST);
 }
 
@@ -275,6 +279,32 @@ static void save_picture(view_window *view)
     }
 }
 
+/* A new tint, a new medium, or the one of the bake. A medium takes seconds: that is said first.
+ * What is refused is one line, and the medium stays. */
+static parian_result edit_medium(view_window *view, const parian_view_requests *asked)
+{
+    parian_view_state *state = &view->state;
+    parian_medium_edit edit = view->app->edit[state->body];
+    if (asked->edit_medium) {
+        edit = state->draft;
+        edit.change_medium = true;
+        snprintf(state->line, sizeof state->line, "computing the medium ...");
+        parian_result result = present(view);
+        if (result != PARIAN_OK) {
+            return result;
+        }
+    } else if (asked->undo_medium) {
+        edit = (parian_medium_edit){.change_medium = false};
+    }
+    memcpy(edit.tint, state->draft.tint, asked->undo_medium ? 0 : sizeof edit.tint);
+    state->line[0] = '\0';
+    parian_result result = parian_view_app_edit(view->app, state->body, &edit);
+    state->draft_stale = result == PARIAN_OK;
+    state->picture_stale = true;
+    view->glfw.settle = SETTLE_FRAMES;
+    return is_fatal(result) ? result : PARIAN_OK;
+}
+
 static parian_result answer_requests(view_window *view)
 {
     parian_view_requests *requests = &view->state.requests;
@@ -285,7 +315,10 @@ static parian_result answer_requests(view_window *view)
     if (requests->list_keys) {
         list_keys();
     }
-    if (requests->frame_bodies && view->glfw.height > 0) {
+    if (requests->tint || requests->edit_medium || requests->undo_medium) {
+        result = edit_medium(view, requests);
+    }
+    if (result == PARIAN_OK && requests->frame_bodies && view->glfw.height > 0) {
         result = parian_view_app_frame(view->app, aspect(view));
         view->state.picture_stale = true;
     }
@@ -374,7 +407,8 @@ static parian_result take_loaded(view_window *view)
     note_size(view);
     parian_renderer_set_timing(view->app->renderer, view->state.time_passes);
     view->state.renderer_name = parian_renderer_name(view->app->renderer);
-    view->state.picture_stale = true;
+    view->state.picture_stale = view->state.draft_stale = true;
+    view->state.body = 0;
     return PARIAN_OK;
 }
 
@@ -568,6 +602,7 @@ parian_result parian_view_run_window(parian_view_app *app)
     app->env = &view->relay.env;
     app->get_proc_address = parian_view_glfw_proc_address;
     view->state = (parian_view_state){.app = app,
+                                      .draft_stale = true,
                                       .show_panel = !app->options->frames,
                                       .show_gizmos = !app->options->frames,
                                       .selected = PARIAN_VIEW_NO_LIGHT,

@@ -297,6 +297,43 @@ static void test_adopting(void **state)
     close_fixture(f);
 }
 
+/* A medium edit reaches B and is told; a medium that cannot be changes nothing; a new asset forgets
+ * it. */
+static void test_medium(void **state)
+{
+    fixture *f = open_fixture("point:0,0,0.06:intensity=0.01");
+    const parian_env *env = f->app.env;
+    const uint64_t count = f->app.info.texel_count;
+    float(*before)[3] = parian_alloc(env, count, sizeof *before);
+    float(*after)[3] = parian_alloc(env, count, sizeof *after);
+    const parian_scene_body body = parian_scene_get_body(f->app.scene, 0);
+    parian_medium_edit edit = {.change_medium = true, .eta = body.eta};
+    (void)state;
+    for (int c = 0; c < 3; c++) {
+        edit.sigma_s_prime[c] = body.sigma_s_prime[c];
+        edit.sigma_a[c] = 20 * body.sigma_a[c] + 1;
+    }
+    const parian_texel_arrays first = {.radiosity = before}, second = {.radiosity = after};
+    assert_int_equal(parian_renderer_read_texels(f->app.renderer, &first), PARIAN_OK);
+    assert_int_equal(parian_view_app_edit(&f->app, 0, &edit), PARIAN_OK);
+    assert_true(f->app.edit[0].change_medium && f->app.report.text[0] && f->app.error_stale);
+    assert_int_equal(parian_renderer_read_texels(f->app.renderer, &second), PARIAN_OK);
+    double sum[2] = {0, 0};
+    for (uint64_t t = 0; t < count; t++) {
+        sum[0] += (double)before[t][0];
+        sum[1] += (double)after[t][0];
+    }
+    assert_true(sum[1] < 0.98 * sum[0]); /* it absorbs more */
+    edit.eta = 0.5;
+    assert_int_equal(parian_view_app_edit(&f->app, 0, &edit), PARIAN_E_ARGUMENT);
+    assert_true(f->app.edit[0].eta == body.eta);
+    assert_int_equal(parian_view_app_adopt(&f->app, lit_sphere(env, 0.02f, 4, 3), true), PARIAN_OK);
+    assert_false(f->app.edit[0].change_medium);
+    parian_free(env, before);
+    parian_free(env, after);
+    close_fixture(f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -305,6 +342,7 @@ int main(void)
         cmocka_unit_test(test_lights_by_hand), cmocka_unit_test(test_switched_off),
         cmocka_unit_test(test_keys),           cmocka_unit_test(test_layout),
         cmocka_unit_test(test_drops),          cmocka_unit_test(test_adopting),
+        cmocka_unit_test(test_medium),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -208,6 +208,15 @@ void parian_panel_note(parian_panel *panel, const char *text)
     });
 }
 
+void parian_panel_wrapped(parian_panel *panel, const char *text, float width)
+{
+    run(panel, [&] {
+        ImGui::PushTextWrapPos(width);
+        ImGui::TextUnformatted(text);
+        ImGui::PopTextWrapPos();
+    });
+}
+
 void parian_panel_same_line(parian_panel *panel)
 {
     run(panel, [] { ImGui::SameLine(); });

@@ -66,6 +66,8 @@ void parian_panel_text(parian_panel *panel, const char *format, ...)
     ;
 /* The same, wrapped and dim. */
 void parian_panel_note(parian_panel *panel, const char *text);
+/* Wrapped after `width`, window coordinates. */
+void parian_panel_wrapped(parian_panel *panel, const char *text, float width);
 void parian_panel_same_line(parian_panel *panel);
 bool parian_panel_button(parian_panel *panel, const char *label);
 bool parian_panel_check(parian_panel *panel, const char *label, bool *value);
