@@ -7,6 +7,7 @@
 
 #include "runtime/renderer_internal.h"
 #include "support/lit_scene.h"
+#include "support/tiny_body.h"
 #include "tool/files.h"
 #include "view_gizmo.h"
 #include "view_input.h"
@@ -303,6 +304,11 @@ static void test_medium(void **state)
 {
     fixture *f = open_fixture("point:0,0,0.06:intensity=0.01");
     const parian_env *env = f->app.env;
+    parian_scene_data data = {0};
+    parian_scene *scene = NULL;
+    assert_int_equal(test_tiny_scene(env, PARIAN_LOCAL_F16, 24, &data), PARIAN_OK);
+    assert_int_equal(parian_scene_adopt(env, &data, &scene), PARIAN_OK);
+    assert_int_equal(parian_view_app_adopt(&f->app, scene, true), PARIAN_OK);
     const uint64_t count = f->app.info.texel_count;
     float(*before)[3] = parian_alloc(env, count, sizeof *before);
     float(*after)[3] = parian_alloc(env, count, sizeof *after);
