@@ -157,7 +157,7 @@ static parian_result place_legend(layout *l)
     parian_chart_key key = parian_chart_measure_key(names, count);
     parian_free(l->env, names);
     double width = l->frame.x1 - l->frame.x0, height = l->frame.y1 - l->frame.y0;
-    for (int i = 0; i < 4 && key.width < 0.5 * width && key.height < 0.5 * height; i++) {
+    for (int i = 0; i < 4 && key.width < 0.65 * width && key.height < 0.5 * height; i++) {
         parian_chart_box box = corner_box(l, key, order[i]);
         if (parian_chart_box_is_free(&box, l->dots, l->point_count)) {
             l->legend = LEGEND_CORNER;
