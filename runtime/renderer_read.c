@@ -140,6 +140,7 @@ parian_result parian_renderer_get_gl_textures(parian_renderer *renderer, uint32_
                                .eta = renderer->optics[body].eta,
                                .exit_norm = renderer->optics[body].exit_norm};
     memcpy(made.model, at->model, sizeof made.model);
+    memcpy(made.tint, renderer->optics[body].tint, sizeof made.tint);
     parian_result result = parian_renderer_relight(renderer);
     if (result == PARIAN_OK) {
         result = renderer->backend->hand_out(renderer, instance, body, &made);

@@ -49,6 +49,7 @@ static const char mesh_fragment[] =
     "in vec2 v_uv;\n"
     "uniform sampler2D u_radiosity, u_albedo;\n"
     "uniform float u_eta, u_exit_norm;\n"
+    "uniform vec3 u_tint;\n"
     "uniform vec3 u_eye;\n"
     "out vec4 o_color;\n"
     "float transmit(float c, float eta) {\n"
@@ -63,7 +64,7 @@ static const char mesh_fragment[] =
     "    float c = max(dot(n, v), 1e-3);\n"
     "    vec3 radiance = transmit(c, u_eta) * look_up(u_radiosity, v_uv) * look_up(u_albedo, "
     "v_uv);\n"
-    "    o_color = vec4(radiance / (3.14159265 * u_exit_norm), 1.0);\n"
+    "    o_color = vec4(radiance * u_tint / (3.14159265 * u_exit_norm), 1.0);\n"
     "}\n";
 
 static GLuint build(const gl_host *host, const char *vertex, const char *fragment)
@@ -267,6 +268,7 @@ static void set_uniforms(const gl_host *host, GLuint program, const parian_gl_te
     gl->Uniform3fv(gl->GetUniformLocation(program, "u_eye"), 1, view.eye);
     gl->Uniform1f(gl->GetUniformLocation(program, "u_eta"), textures->eta);
     gl->Uniform1f(gl->GetUniformLocation(program, "u_exit_norm"), textures->exit_norm);
+    gl->Uniform3fv(gl->GetUniformLocation(program, "u_tint"), 1, textures->tint);
     gl->Uniform1i(gl->GetUniformLocation(program, "u_radiosity"), 0);
     gl->Uniform1i(gl->GetUniformLocation(program, "u_albedo"), 1);
 }
@@ -348,6 +350,8 @@ static void test_host_picture(void **state)
         skip();
     }
     assert_int_equal(parian_renderer_set_settings(host->renderer, &settings), PARIAN_OK);
+    const parian_medium_edit edit = {.tint = {0.5f, 1.0f, 2.0f}};
+    assert_int_equal(parian_renderer_set_medium(host->renderer, 0, &edit, NULL), PARIAN_OK);
     assert_int_equal(parian_renderer_set_lights(host->renderer, &first_light, 1), PARIAN_OK);
     assert_int_equal(parian_renderer_set_instances(host->renderer, pair, 2), PARIAN_OK);
     assert_int_equal(parian_renderer_draw(host->renderer, &host->draw), PARIAN_OK);

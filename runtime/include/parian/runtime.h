@@ -265,10 +265,11 @@ parian_result parian_renderer_read_texels(parian_renderer *renderer, const paria
  *   #version 330 core                     // of a host: corner_uv / atlas_size in, radiance out
  *   uniform sampler2D u_radiosity, u_albedo;      // u_albedo where there is one
  *   uniform float u_eta, u_exit_norm;
+ *   uniform vec3 u_tint;
  *   vec3 look_up(sampler2D map, vec2 uv) { vec4 v = texture(map, uv); return v.rgb / max(v.a, 1e-6); }
  *   ...
  *   vec3 radiance = transmit(dot(n, view), u_eta) * look_up(u_radiosity, uv) * look_up(u_albedo, uv)
- *                   / (3.14159265 * u_exit_norm);
+ *                   * u_tint / (3.14159265 * u_exit_norm);
  *
  * with transmit the unpolarised Fresnel transmittance from outside. This is what parian_renderer_draw shows without
  * specular lobe, normal map, exposure and tone curve. */
@@ -279,7 +280,8 @@ typedef struct parian_gl_textures {
     uint32_t normal_map; /* unit normals in the space of the vertices; 0: the body has none */
     uint32_t size;       /* side of all of them, texels */
     float model[16], scale; /* where the instance stands, column-major */
-    float eta, exit_norm;   /* relative index; C of L = F_t B T_p / (pi C) */
+    float eta, exit_norm;   /* relative index; C of L = F_t B T_p tint / (pi C) */
+    float tint[3];          /* of a medium edit; 1, 1, 1 without */
 } parian_gl_textures;
 
 /* Relights if needed. E and B change in place whenever a later call relights (parian_renderer_relight, draw,
