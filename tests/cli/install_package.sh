@@ -18,7 +18,7 @@ for tool in parian-info parian-view parian-bake parian-models parian-measure; do
         present "$file"
     done
 done
-for file in include/parian/{env,format,light,result,runtime}.h share/doc/*/LICENSE share/doc/*/docs/format.md \
+for file in include/parian/{env,format,light,result,runtime}.h share/doc/*/LICENSE share/doc/*/docs/{format,embedding}.md \
     share/doc/*/docs/examples/relight/relight_window.c share/man/man1/parian-info-validate.1; do
     present "$file"
 done
