@@ -65,7 +65,9 @@ static parian_renderer *make(const parian_scene *scene)
 {
     parian_renderer_desc desc = small_desc();
     parian_renderer *renderer = NULL;
-    assert_int_equal(parian_renderer_create(&logging, scene, &desc, &renderer), PARIAN_OK);
+    if (parian_renderer_create(&logging, scene, &desc, &renderer) != PARIAN_OK) {
+        fail_msg("%s", errors.line);
+    }
     return renderer;
 }
 
