@@ -64,6 +64,10 @@ parian_result parian_view_app_prepare(parian_view_app *app)
         result = parian_view_lights_read(app->env, o, &app->lights);
     }
     app->lights_given = app->lights.count > 0;
+    if (result == PARIAN_OK) {
+        result = parian_view_medium_read(app->env, o, &app->medium);
+    }
+    app->tone = (parian_tone)o->tone;
     if (result == PARIAN_OK && o->reference) {
         result = parian_view_reference_read(app->env, o->reference, &app->reference);
     }
@@ -144,6 +148,9 @@ parian_result parian_view_app_adopt(parian_view_app *app, parian_scene *scene, b
     use_scene(app, scene);
     app->renderer = made;
     result = keep && before ? parian_view_app_send_lights(app) : make_view(app);
+    if (result == PARIAN_OK) {
+        result = parian_view_app_send_medium(app);
+    }
     if (result != PARIAN_OK && before) {
         parian_renderer_destroy(made);
         parian_scene_close(scene);
@@ -245,6 +252,12 @@ parian_result parian_view_app_read_lights(parian_view_app *app, const char *path
     return PARIAN_OK;
 }
 
+parian_result parian_view_app_send_medium(parian_view_app *app)
+{
+    app->error_stale = true;
+    return parian_view_medium_send(app->renderer, app->info.body_count, &app->medium);
+}
+
 /* ---- drawing -----------------------------------------------------------------------------------
  */
 parian_result parian_view_app_draw(parian_view_app *app, uint32_t width, uint32_t height,
@@ -257,6 +270,7 @@ parian_result parian_view_app_draw(parian_view_app *app, uint32_t width, uint32_
         .height = height,
         .exposure_auto = app->exposure_auto,
         .exposure_ev = app->exposure_ev,
+        .tone = app->tone,
         .framebuffer = framebuffer};
     const bool picture_error = app->display == PARIAN_DISPLAY_ERROR && app->reference.pixel != NULL;
     app->settings.view =

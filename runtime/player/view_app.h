@@ -9,6 +9,7 @@
 #include "parian/runtime.h"
 #include "view_camera.h"
 #include "view_lights.h"
+#include "view_medium.h"
 #include "view_options.h"
 #include "view_reference.h"
 
@@ -40,6 +41,8 @@ typedef struct parian_view_app {
     void *on_upload_user;
     parian_settings settings; /* the view comes from the display */
     parian_view_display display;
+    parian_view_medium medium; /* of all bodies */
+    parian_tone tone;
     bool exposure_auto;
     float exposure_ev;
     parian_view_reference reference;
@@ -68,6 +71,9 @@ parian_result parian_view_app_draw(parian_view_app *app, uint32_t width, uint32_
 parian_result parian_view_app_frame(parian_view_app *app, double aspect);
 /* Give the renderer the lights that are on. */
 parian_result parian_view_app_send_lights(parian_view_app *app);
+/* Give the renderer app->medium, after its name (parian_view_medium_choose), size factor or tint
+ * changed; takes seconds where the medium did. The old one stays on failure. */
+parian_result parian_view_app_send_medium(parian_view_app *app);
 /* Force a full relight, and do it. */
 parian_result parian_view_app_relight(parian_view_app *app);
 

@@ -13,8 +13,8 @@
 #include "core/memory.h"
 #include "view_sequence.h"
 
-enum { SIZE_MAX_PIXELS = 16384, WINDOW_WIDTH = 1280, FRAMES_MAX = 1000000, OPTION_MAX = 24 };
-static const double EXPOSURE_LIMIT = 60, RADIANCE_LIMIT = 1e6;
+enum { SIZE_MAX_PIXELS = 16384, WINDOW_WIDTH = 1280, FRAMES_MAX = 1000000, OPTION_MAX = 32 };
+static const double EXPOSURE_LIMIT = 60, RADIANCE_LIMIT = 1e6, TINT_LIMIT = 10;
 
 static size_t fill_table(parian_view_options *o, parian_option table[OPTION_MAX])
 {
@@ -65,6 +65,20 @@ static size_t fill_table(parian_view_options *o, parian_option table[OPTION_MAX]
          "Scale the picture by 2^EV before the tone curve; auto: from its log-average luminance. "
          "(From the lights.)",
          0, 0, NULL, NULL},
+        {"--tone", NULL, PARIAN_OPTION_CHOICE, &o->tone, "CURVE",
+         "neutral, linear (clamped) or reinhard (neutral).", 0, 0, "neutral|linear|reinhard", NULL},
+        {"--medium", NULL, PARIAN_OPTION_STRING, &o->medium, "NAME|FILE.json",
+         "Show the bodies in another medium than they were baked of, and tell what could not "
+         "follow; names as "
+         "parian-bake --list-materials.",
+         0, 0, NULL, NULL},
+        {"--size-factor", NULL, PARIAN_OPTION_NUMBER, &o->size_factor, "X",
+         "Show the bodies, and all around them, as if they were X times as large as they were "
+         "baked (1).",
+         1e-3, 1e3, NULL, NULL},
+        {"--tint", NULL, PARIAN_OPTION_STRING, &o->tint_text, "R,G,B",
+         "Colour the light that scatters out, with numbers of 0 to 10, apart from transfer.", 0, 0,
+         NULL, NULL},
         {"--background", NULL, PARIAN_OPTION_STRING, &o->background_text, "R,G,B",
          "Radiance behind everything (a dim grey in proportion to the lights; 0,0,0 for .exr).", 0,
          0, NULL, NULL},
@@ -173,24 +187,31 @@ static parian_result check_exposure(const parian_env *env, parian_view_options *
     return PARIAN_OK;
 }
 
-static parian_result check_background(const parian_env *env, parian_view_options *o)
+static parian_result read_color(const parian_env *env, const char *option, const char *text,
+                                double most, double color[3])
 {
-    const char *at = o->background_text;
-    if (!at) {
-        return PARIAN_OK;
-    }
-    for (int c = 0; c < 3; c++) {
+    const char *at = text;
+    for (int c = 0; at && c < 3; c++) {
         char *end;
         double value = strtod(at, &end);
-        if (end == at || !(value >= 0 && value <= RADIANCE_LIMIT) || *end != (c < 2 ? ',' : '\0')) {
+        if (end == at || !(value >= 0 && value <= most) || *end != (c < 2 ? ',' : '\0')) {
             return parian_fail(env, PARIAN_E_ARGUMENT,
-                               "--background: '%s' is not R,G,B with numbers of 0 to %g",
-                               o->background_text, RADIANCE_LIMIT);
+                               "%s: '%s' is not R,G,B with numbers of 0 to %g", option, text, most);
         }
-        o->background[c] = value;
+        color[c] = value;
         at = end + 1;
     }
     return PARIAN_OK;
+}
+
+static parian_result check_tint(const parian_env *env, parian_view_options *o)
+{
+    parian_result result = read_color(env, "--tint", o->tint_text, TINT_LIMIT, o->tint);
+    if (result == PARIAN_OK && o->tint_text && o->tint[0] + o->tint[1] + o->tint[2] == 0) {
+        result =
+            parian_fail(env, PARIAN_E_ARGUMENT, "--tint: '%s' leaves nothing to see", o->tint_text);
+    }
+    return result;
 }
 
 static parian_result check_method(const parian_env *env, const parian_view_options *o)
@@ -257,7 +278,11 @@ parian_result parian_view_options_check(const parian_env *env, parian_view_optio
         result = check_exposure(env, options);
     }
     if (result == PARIAN_OK) {
-        result = check_background(env, options);
+        result = read_color(env, "--background", options->background_text, RADIANCE_LIMIT,
+                            options->background);
+    }
+    if (result == PARIAN_OK) {
+        result = check_tint(env, options);
     }
     if (result == PARIAN_OK) {
         result = check_method(env, options);

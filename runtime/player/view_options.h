@@ -34,10 +34,14 @@ typedef struct parian_view_options {
     uint32_t width, height;
     bool exposure_auto;
     double exposure_ev;
+    const char *medium;   /* name or file; NULL: as baked */
+    double size_factor;   /* 0: as baked */
+    double tint[3];       /* zeros: none */
+    int tone;             /* parian_tone */
     double roughness;     /* 0: the renderer's default */
     double background[3]; /* negative: in proportion to the lights */
     /* As typed, until they are checked. */
-    const char *size_text, *exposure_text, *background_text, *method_text, *view_text;
+    const char *size_text, *exposure_text, *background_text, *method_text, *view_text, *tint_text;
 } parian_view_options;
 
 /* Parse; mistakes are told on stderr. After --help or --version options->common says so. */
