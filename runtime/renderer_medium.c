@@ -144,6 +144,10 @@ static void judge(const parian_edited_body *edited, const parian_probe_error *er
     } else {
         rate(report, PARIAN_EDIT_GLOBAL_PART, 1 - report->energy, ENERGY_ALLOWED);
     }
+    if (!(report->missing & PARIAN_EDIT_GLOBAL_PART)) {
+        rate(report, PARIAN_EDIT_RESOLUTION, report->error_smooth - report->beyond_mean,
+             HARD_ALLOWED);
+    }
     if (body->local_form == PARIAN_LOCAL_NONE) {
         rate(report, PARIAN_EDIT_LOCAL_PART, report->error_hard, HARD_ALLOWED);
     }
@@ -155,7 +159,7 @@ static void add_text(parian_medium_report *report, const char *format, double va
     snprintf(report->text + length, sizeof report->text - length, format, value);
 }
 
-static void describe(const parian_body *body, parian_medium_report *report)
+static void describe(parian_medium_report *report)
 {
     uint32_t off = report->approximate | report->missing;
     snprintf(report->text, sizeof report->text, "optics%s%s%s follow the medium",
@@ -175,13 +179,13 @@ static void describe(const parian_body *body, parian_medium_report *report)
     if (off & PARIAN_EDIT_LOCAL_PART) {
         add_text(report, "; hard edges blur, for there is no local part", 0);
     }
+    if (off & PARIAN_EDIT_RESOLUTION) {
+        add_text(report, "; vertices and texels are coarse for this medium", 0);
+    }
     add_text(report, "; error of B %.2g %% under smooth light", 100 * report->error_smooth);
     add_text(report, ", %.2g %% at hard edges", 100 * report->error_hard);
     if (report->missing) {
-        add_text(report,
-                 body->paper_form ? "; bake anew for this medium (the paper's form)"
-                                  : "; bake anew for this medium",
-                 0);
+        add_text(report, "; bake anew for this medium", 0);
     }
 }
 
@@ -221,7 +225,7 @@ static parian_result make_edited(const parian_renderer *renderer, uint32_t b,
     result = parian_transport_probe(&renderer->env, &edited->body, &edited->kernels, &error);
     if (result == PARIAN_OK) {
         judge(edited, &error, report);
-        describe(baked, report);
+        describe(report);
     } else {
         parian_edited_body_free(&renderer->env, edited);
     }

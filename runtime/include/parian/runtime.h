@@ -177,7 +177,8 @@ typedef enum parian_edit_part { /* bits */
     PARIAN_EDIT_KERNELS = 16,     /* local kernels */
     PARIAN_EDIT_REACH = 32,       /* light between pairs that the asset does not hold */
     PARIAN_EDIT_LOCAL_PART = 64,  /* the body was baked without one, and now needs it */
-    PARIAN_EDIT_GLOBAL_PART = 128 /* the same */
+    PARIAN_EDIT_GLOBAL_PART = 128, /* the same */
+    PARIAN_EDIT_RESOLUTION = 256  /* vertices and texels are too coarse for so dense a medium */
 } parian_edit_part;
 
 typedef struct parian_medium_report {
