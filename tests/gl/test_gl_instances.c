@@ -233,6 +233,53 @@ static void test_turned_with_its_light(void **state)
     (void)state;
 }
 
+/* Scaled with lights that shine through thin ears and from a tenth of a texel away: shadow lifts
+ * and the sides of texels must scale too. Shadow maps are the same but for rounding, which may move
+ * a shadow's edge at one texel in a thousand. */
+static void expect_scaled(const parian_env *env, const parian_scene *scene, bool gl)
+{
+    const float axis[3] = {0, 1, 0};
+    const parian_instance scaled = place(axis, 0.0f, 40.0f, 0.0f, 0.0f, 0.0f);
+    const float *near_texel = scene->data.bodies[0].texel_position[0];
+    const float *normal = scene->data.bodies[0].texel_normal[0];
+    const float side = sqrtf(scene->data.bodies[0].texel_area[0]);
+    parian_light lights[2] = {
+        {.type = PARIAN_LIGHT_POINT, .color = {3, 2, 1}},
+        {.type = PARIAN_LIGHT_DIRECTIONAL, .direction = {-0.9f, -0.2f, -0.3f}, .color = {3, 2, 1}}};
+    for (int c = 0; c < 3; c++) {
+        lights[0].position[c] = near_texel[c] + 0.1f * side * normal[c];
+    }
+    parian_renderer *renderer = make(env, scene, gl);
+    for (int l = 0; l < 2; l++) {
+        const parian_light moved = follow(&lights[l], &scaled, 40.0f);
+        assert_int_equal(parian_renderer_set_instances(renderer, NULL, 0), PARIAN_OK);
+        assert_int_equal(parian_renderer_set_lights(renderer, &lights[l], 1), PARIAN_OK);
+        float3_array before = read_radiosity(env, renderer, 0, true);
+        assert_int_equal(parian_renderer_set_instances(renderer, &scaled, 1), PARIAN_OK);
+        assert_int_equal(parian_renderer_set_lights(renderer, &moved, 1), PARIAN_OK);
+        float3_array after = read_radiosity(env, renderer, 0, true);
+        /* The texel that the first light is near: its side bounds 1 / d^2. */
+        assert_true(l == 1 || fabsf(after[0][0] / before[0][0] - 1.0f) < 1e-3f);
+        double off = differing(env, after, before, scene->info.texel_count, 1e-3);
+        print_message("scaled, light %d: %.5f differ\n", l, off);
+        assert_true(off <= 0.001);
+    }
+    parian_renderer_destroy(renderer);
+}
+
+static void test_scaled(void **state)
+{
+    const parian_env *env = test_env(0);
+    parian_mesh mesh = {0};
+    test_lit_desc desc = {.cut = 6, .form = PARIAN_LOCAL_NONE};
+    assert_int_equal(test_figure(env, 0.02, 10, &mesh), PARIAN_OK);
+    parian_scene *scene = lit_scene(env, &mesh, &desc);
+    expect_scaled(env, scene, false);
+    expect_scaled(env, scene, true);
+    parian_scene_close(scene);
+    (void)state;
+}
+
 /* ---- instances shadow each other; counters ---- */
 
 static uint64_t runs_of(const parian_renderer *renderer, parian_pass pass)
@@ -441,9 +488,9 @@ static int run_flavour(bool es)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_against_c),      cmocka_unit_test(test_turned_with_its_light),
-        cmocka_unit_test(test_shadows),        cmocka_unit_test(test_gl_memory),
-        cmocka_unit_test(test_failing_memory), cmocka_unit_test(test_surface_arrays),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_scaled),         cmocka_unit_test(test_shadows),
+        cmocka_unit_test(test_gl_memory),      cmocka_unit_test(test_failing_memory),
+        cmocka_unit_test(test_surface_arrays), cmocka_unit_test(test_refusals),
     };
     test_egl egl;
     if (!test_egl_open(&egl, es)) {
