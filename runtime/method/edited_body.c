@@ -160,9 +160,11 @@ parian_result parian_edited_body_make(const parian_env *env, const parian_body *
 {
     parian_edited_body edited;
     if (baked->operator_count > 1) {
-        return parian_fail(env, PARIAN_E_UNSUPPORTED,
-                           "the medium of a body with %u operators cannot be edited, at most 1",
-                           baked->operator_count);
+        return parian_fail(
+            env, PARIAN_E_UNSUPPORTED,
+            "the medium of body '%s' cannot be edited: its factors have coarse levels "
+            "(%u operators, expected 1); bake it with one level",
+            baked->name, baked->operator_count);
     }
     share_body(baked, medium, &edited);
     parian_result result = PARIAN_OK;
