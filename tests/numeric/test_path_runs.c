@@ -287,6 +287,29 @@ static void errors_are_honest(void **state)
     release(&o);
 }
 
+/* A run that stops at an error has reached it in every channel, also in one that is nearly clear
+ * and the noisiest. */
+static void every_channel_reaches_the_error(void **state)
+{
+    (void)state;
+    const parian_light sun = {
+        .type = PARIAN_LIGHT_DIRECTIONAL, .direction = {0, -1, 0}, .color = {3, 3, 3}};
+    const parian_medium uneven = {
+        .sigma_s_prime = {2000, 1000, 100}, .sigma_a = {1, 1, 1}, .eta = 1.5};
+    const parian_path_desc desc = {.standard_error = 0.1, .seed = 3};
+    outcome o = trace_sphere(1 * MM, 6, &uneven, &sun, 20, &desc);
+    double relative[3];
+    for (int c = 0; c < 3; c++) {
+        relative[c] =
+            path_case_error(&o.result, o.count, c) * sqrt((double)o.count) / mean_b(&o, c);
+        print_message("channel %d: %.3f\n", c, relative[c]);
+        assert_true(relative[c] <= 0.1 * (1 + 1e-9));
+    }
+    assert_true(relative[0] < 0.8 * relative[2] ||
+                relative[2] < 0.8 * relative[0]); /* else this would tell nothing */
+    release(&o);
+}
+
 static void bad_input(void **state)
 {
     (void)state;
@@ -349,6 +372,7 @@ int main(void)
         cmocka_unit_test(far_side_is_dark_in_dense_media),
         cmocka_unit_test(every_scale),
         cmocka_unit_test(errors_are_honest),
+        cmocka_unit_test(every_channel_reaches_the_error),
         cmocka_unit_test(bad_input),
         cmocka_unit_test(memory_failures),
     };
