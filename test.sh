@@ -1,7 +1,7 @@
 #!/bin/bash
 # test.sh - installs what is missing, builds, and runs the whole test suite.
 #
-#   ./test.sh              everything: release build (all tests), sanitizer build (unit, robust, cli)
+#   ./test.sh              everything: release build (all tests), sanitizer build (unit, robust, gl, cli)
 #   ./test.sh release      only the release build
 #   ./test.sh sanitize     only the sanitizer build
 #   PARIAN_JOBS=N          that many compilers and tests at a time (the number of cores)
@@ -40,7 +40,7 @@ if [ "$what" != release ]; then
     # Drivers and libraries that are not ours keep memory until the end: only leaks of our own count.
     export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
     export LSAN_OPTIONS="suppressions=$PWD/.ci/leaks.txt:print_suppressions=0"
-    tests sanitize 'unit|robust|cli' || failed="$failed sanitizer"
+    tests sanitize 'unit|robust|gl|cli' || failed="$failed sanitizer"
 fi
 say "$((SECONDS - started)) s"
 if [ -n "$failed" ]; then

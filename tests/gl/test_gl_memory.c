@@ -16,7 +16,12 @@
 #include "support/lit_scene.h"
 #include "support/tiny_body.h"
 
-enum { WIDTH = 120, HEIGHT = 90, CPU_RELIGHTS = 10000, GL_SECONDS = 3, GL_RELIGHTS_MIN = 200 };
+enum { WIDTH = 120, HEIGHT = 90, GL_SECONDS = 3, GL_RELIGHTS_MIN = 200 };
+#ifdef __SANITIZE_ADDRESS__
+enum { CPU_RELIGHTS = 500 };
+#else
+enum { CPU_RELIGHTS = 10000 };
+#endif
 
 static const parian_light sun = {
     .type = PARIAN_LIGHT_DIRECTIONAL, .direction = {-0.4f, -0.2f, -1}, .color = {3, 2, 1}};
