@@ -99,6 +99,9 @@ static parian_result prepare(parian_renderer *renderer)
         result = parian_renderer_start_instances(renderer);
     }
     if (result == PARIAN_OK) {
+        result = parian_renderer_prepare_sets(renderer);
+    }
+    if (result == PARIAN_OK) {
         result = renderer->backend->create(renderer);
     }
     return result == PARIAN_OK ? renderer->backend->resize(renderer, 1) : result;
@@ -109,11 +112,12 @@ parian_result parian_renderer_create(const parian_env *env, const parian_scene *
 {
     parian_renderer *made;
     if (!scene || !desc || !renderer || (unsigned)desc->backend > PARIAN_BACKEND_CPU ||
-        desc->shadow_size > SHADOW_SIZE_MAX) {
+        desc->shadow_size > SHADOW_SIZE_MAX || desc->environment_lights > PARIAN_LIGHT_MAX) {
         return parian_fail(
             env, PARIAN_E_ARGUMENT,
-            "a renderer needs a scene, a known backend and shadow maps of at most %d texels",
-            SHADOW_SIZE_MAX);
+            "a renderer needs a scene, a known backend, shadow maps of at most %d texels and "
+            "environments of at most %d lights",
+            SHADOW_SIZE_MAX, PARIAN_LIGHT_MAX);
     }
     parian_result result = check_scene(env, scene);
     if (result != PARIAN_OK) {
@@ -145,6 +149,7 @@ void parian_renderer_destroy(parian_renderer *renderer)
         const parian_env *env = &renderer->env, parent = renderer->frame_memory.parent;
         renderer->backend->destroy(renderer);
         parian_light_list_free(env, &renderer->lights);
+        parian_renderer_free_sets(renderer);
         parian_free(env, renderer->instances);
         parian_free(env, renderer->optics);
         parian_free(env, renderer->medium);
@@ -165,7 +170,8 @@ parian_result parian_renderer_set_lights(parian_renderer *renderer, const parian
     if (!renderer || (count > 0 && !lights)) {
         return PARIAN_E_ARGUMENT;
     }
-    parian_result result = parian_light_list_build(&renderer->env, lights, count, &list);
+    parian_result result = parian_light_list_build(&renderer->env, lights, count,
+                                                   renderer->desc.environment_lights, &list);
     if (result != PARIAN_OK) {
         return result;
     }
@@ -238,12 +244,16 @@ parian_result parian_renderer_relight(parian_renderer *renderer)
     parian_frame_memory_tick(&renderer->frame_memory);
     parian_result result = parian_renderer_check_uploaded(renderer);
     if (result == PARIAN_OK) {
+        result = parian_renderer_place_casters(renderer);
+    }
+    if (result == PARIAN_OK) {
         result = renderer->backend->relight(renderer, from);
         renderer->picture_stale = true;
     }
     if (result == PARIAN_OK) {
         renderer->lights_changed = false;
         renderer->edited_from = PARIAN_PASS_SHADE;
+        renderer->set_count = from <= PARIAN_PASS_IRRADIANCE ? 1 : renderer->set_count;
     }
     return result;
 }

@@ -9,6 +9,8 @@
 #include "frame_memory.h"
 #include "lights/light_list.h"
 #include "method/edited_body.h"
+#include "lights/occluder_tree.h"
+#include "method/ray_origins.h"
 #include "parian/runtime.h"
 #include "placement.h"
 #include "scene_internal.h"
@@ -50,6 +52,12 @@ typedef struct parian_backend_table {
     /* Take over another medium's factors, weights and kernels of one body; edited is then empty.
      * After PARIAN_E_DEVICE the body's transport is undefined. */
     parian_result (*edit)(parian_renderer *renderer, uint32_t body, parian_edited_body *edited);
+    /* The lights changed: make E, the registers, the local and global part, and their gutters, of
+     * all instances. */
+    parian_result (*relight)(parian_renderer *renderer);
+    /* Take set `set` > 0 of samples (renderer->varied) into the mean of E, and what follows from E.
+     */
+    parian_result (*refine)(parian_renderer *renderer, uint32_t set);
     /* Shade where asked to (else the last linear picture is still right) and tone-map; keeps the
      * pictures. */
     parian_result (*draw)(parian_renderer *renderer, const parian_draw_desc *desc, bool shade);
@@ -112,6 +120,13 @@ struct parian_renderer {
     parian_bounds bounds;        /* of all instances and the surroundings */
     bool lights_changed;         /* lights or instances, since the last relight */
     parian_pass edited_from;     /* first pass that an edit made stale; PARIAN_PASS_SHADE: none */
+    uint32_t set_count;          /* sets of samples in E */
+    parian_occluder_tree tree;
+    uint32_t caster_count, caster_room;
+    parian_caster *caster;       /* [caster_count] bodies of each instance, then surroundings */
+    parian_texel_cover *cover;   /* [body_count] empty until the first refinement */
+    float (*origin)[3];          /* room for the starts of one body's rays */
+    parian_light_sample *varied; /* [PARIAN_LIGHT_MAX] samples of the set that is added */
     bool has_values;             /* to paint on the bodies */
     bool timing;
     double pass_start;
@@ -125,6 +140,13 @@ struct parian_renderer {
 /* Bracket a pass: counts its runs and, with timing on, its milliseconds. */
 void parian_renderer_begin_pass(parian_renderer *renderer);
 void parian_renderer_end_pass(parian_renderer *renderer, parian_pass pass);
+
+/* refine.c: the tree, and rooms; casters where the instances stand; where rays of a body's texels
+ * start in a set, [texel_count], until the next call. */
+parian_result parian_renderer_prepare_sets(parian_renderer *renderer);
+parian_result parian_renderer_place_casters(parian_renderer *renderer);
+void parian_renderer_free_sets(parian_renderer *renderer);
+const float (*parian_renderer_origins(parian_renderer *renderer, uint32_t body, uint32_t set))[3];
 
 /* Number of registers that a body's operators use (at least 2), and the size of one. */
 uint32_t parian_body_register_count(const parian_body *body);

@@ -9,7 +9,7 @@
 #include "core/kernel.h"
 #include "core/memory.h"
 #include "core/operator.h"
-#include "cpu/cpu_lights.h"
+#include "cpu/cpu_irradiance.h"
 #include "cpu/cpu_shade.h"
 #include "cpu/cpu_tone.h"
 #include "cpu/cpu_transfer.h"
@@ -223,20 +223,11 @@ static parian_result cpu_resize(parian_renderer *renderer, uint32_t instance_cou
 
 /* One body of one instance, on which a pass works. */
 typedef struct pass_body {
-    const parian_placement *at;
-    const parian_body_optics *optics;
     const parian_body *data;
     const cpu_body *shared;
     cpu_lit *lit;
     parian_shade_atlas *atlas;
 } pass_body;
-
-static void run_irradiance(parian_renderer *renderer, const pass_body *one)
-{
-    const cpu_state *state = renderer->state;
-    parian_cpu_irradiance(&renderer->env, &state->lights, one->data, one->at, one->optics->eta,
-                          one->optics->zonal_transmit, one->lit->irradiance);
-}
 
 static void run_restrict(parian_renderer *renderer, const pass_body *one)
 {
@@ -290,11 +281,7 @@ static void run_all(parian_renderer *renderer, void (*run)(parian_renderer *, co
     const uint32_t count = renderer->scene->data.body_count;
     for (uint32_t i = 0; i < renderer->instance_count * count; i++) {
         const uint32_t b = i % count;
-        const pass_body one = {&renderer->instances[i / count],
-                               &renderer->optics[b],
-                               body_now(renderer, b),
-                               &state->body[b],
-                               &state->lit[i],
+        const pass_body one = {body_now(renderer, b), &state->body[b], &state->lit[i],
                                &state->atlas[i]};
         run(renderer, &one);
     }
@@ -315,22 +302,64 @@ static parian_result run_shadow(parian_renderer *renderer)
     return result;
 }
 
-static parian_result cpu_relight(parian_renderer *renderer, parian_pass from)
+/* E under the samples of a set, into the mean of the sets before. */
+static void run_irradiance(parian_renderer *renderer, const parian_light_sample *sample,
+                           uint32_t set)
+{
+    cpu_state *state = renderer->state;
+    const parian_scene_data *data = &renderer->scene->data;
+    parian_irradiance_desc desc = {
+        .list = &renderer->lights,
+        .sample = sample,
+        .casters = {&renderer->tree, renderer->caster, renderer->caster_count},
+        .own_count = data->body_count,
+        .share = 1.0f / (float)(set + 1)};
+    parian_renderer_begin_pass(renderer);
+    for (uint32_t b = 0; b < data->body_count; b++) {
+        desc.body = &data->bodies[b];
+        desc.origin = parian_renderer_origins(renderer, b, set);
+        desc.eta = renderer->optics[b].eta;
+        desc.zonal = renderer->optics[b].zonal_transmit;
+        for (uint32_t i = 0; i < renderer->instance_count; i++) {
+            desc.at = &renderer->instances[i];
+            desc.own_first = i * data->body_count;
+            parian_cpu_irradiance(&renderer->env, &desc,
+                                  state->lit[i * data->body_count + b].irradiance);
+        }
+    }
+    parian_renderer_end_pass(renderer, PARIAN_PASS_IRRADIANCE);
+}
+
+/* What follows from E, from a pass on. */
+static void run_transfer(parian_renderer *renderer, parian_pass from)
 {
     static void (*const passes[])(parian_renderer *, const pass_body *) = {
-        run_irradiance, run_restrict, run_product, run_filter, run_gutter};
-    if (from == PARIAN_PASS_SHADOW) {
-        parian_result result = run_shadow(renderer);
-        if (result != PARIAN_OK) {
-            return result;
-        }
-        from = PARIAN_PASS_IRRADIANCE;
-    }
-    for (parian_pass p = from; p <= PARIAN_PASS_GUTTER; p++) {
+        run_restrict, run_product, run_filter, run_gutter};
+    for (parian_pass p = from > PARIAN_PASS_RESTRICT ? from : PARIAN_PASS_RESTRICT;
+         p <= PARIAN_PASS_GUTTER; p++) {
         parian_renderer_begin_pass(renderer);
-        run_all(renderer, passes[p - PARIAN_PASS_IRRADIANCE]);
+        run_all(renderer, passes[p - PARIAN_PASS_RESTRICT]);
         parian_renderer_end_pass(renderer, p);
     }
+}
+
+static parian_result cpu_relight(parian_renderer *renderer, parian_pass from)
+{
+    parian_result result = from == PARIAN_PASS_SHADOW ? run_shadow(renderer) : PARIAN_OK;
+    if (result != PARIAN_OK) {
+        return result;
+    }
+    if (from <= PARIAN_PASS_IRRADIANCE) {
+        run_irradiance(renderer, renderer->lights.sample, 0);
+    }
+    run_transfer(renderer, from);
+    return PARIAN_OK;
+}
+
+static parian_result cpu_refine(parian_renderer *renderer, uint32_t set)
+{
+    run_irradiance(renderer, renderer->varied, set);
+    run_transfer(renderer, PARIAN_PASS_RESTRICT);
     return PARIAN_OK;
 }
 
@@ -494,6 +523,7 @@ const parian_backend_table parian_cpu_backend = {
     .resize = cpu_resize,
     .relight = cpu_relight,
     .edit = cpu_edit,
+    .refine = cpu_refine,
     .draw = cpu_draw,
     .read_picture = cpu_read_picture,
     .read_texels = cpu_read_texels,

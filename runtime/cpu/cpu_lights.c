@@ -7,13 +7,10 @@
 
 #include <string.h>
 
-#include "core/fresnel.h"
 #include "core/memory.h"
 #include "cpu/cpu_raster.h"
 #include "lights/light_image.h"
 #include "vec3.h"
-
-enum { TEXEL_PIECE = 1024 };
 
 /* ---- shadow maps ---- */
 
@@ -290,82 +287,30 @@ void parian_cpu_environment_radiance(const parian_light_list *list, const float 
     evaluate_sh(list, direction, one, radiance);
 }
 
+void parian_cpu_environment_open(const parian_light_list *list, const float n[3],
+                                 const float zonal[3], const float open[3], const float whole[3],
+                                 float irradiance[3])
+{
+    evaluate_sh(list, n, zonal, irradiance);
+    for (int c = 0; c < 3; c++) {
+        irradiance[c] *= whole[c] > 0.0f ? open[c] / whole[c] : 1.0f;
+    }
+}
+
 void parian_cpu_environment(const parian_cpu_lights *lights, const float p[3], const float n[3],
-                            const float zonal[3], float eta, float scale, float irradiance[3])
+                            const float zonal[3], float scale, float irradiance[3])
 {
     const parian_light_list *list = lights->list;
-    float open[3] = {0}, all[3] = {0};
-    evaluate_sh(list, n, zonal, irradiance);
+    float open[3] = {0}, whole[3] = {0};
     for (uint32_t i = 0; i < list->sample_count; i++) {
         const parian_light_sample *sample = &list->sample[i];
         float cosine = -vec3_dot(n, sample->direction);
         if (sample->kind != PARIAN_SAMPLE_PROBE || cosine <= 0.0f) {
             continue;
         }
-        float weight = cosine * (eta > 0.0f ? parian_fresnel_transmittancef(cosine, eta) : 1.0f);
-        vec3_add_scaled(all, sample->color, weight);
+        vec3_add_scaled(whole, sample->color, cosine);
         vec3_add_scaled(open, sample->color,
-                        weight * parian_cpu_visibility(lights, sample, p, n, scale));
+                        cosine * parian_cpu_visibility(lights, sample, p, n, scale));
     }
-    for (int c = 0; c < 3; c++) {
-        irradiance[c] *= all[c] > 0.0f ? open[c] / all[c] : 1.0f;
-    }
-}
-
-/* ---- E ---- */
-
-typedef struct irradiance_job {
-    const parian_cpu_lights *lights;
-    const parian_body *body;
-    const parian_placement *at;
-    float eta;
-    const float *zonal;
-    float (*irradiance)[3];
-} irradiance_job;
-
-static void irradiance_of_texel(const irradiance_job *job, uint32_t t, float sum[3])
-{
-    const parian_light_list *list = job->lights->list;
-    const float scale = job->at->scale, extent = sqrtf(job->body->texel_area[t]) * scale;
-    float p[3], n[3];
-    placement_point(job->at, job->body->texel_position[t], p);
-    placement_normal(job->at, job->body->texel_normal[t], n);
-    vec3_set(sum, 0.0f);
-    for (uint32_t i = 0; i < list->sample_count; i++) {
-        const parian_light_sample *sample = &list->sample[i];
-        float to_light[3], light[3];
-        if (sample->kind == PARIAN_SAMPLE_PROBE) {
-            continue;
-        }
-        parian_cpu_light_at(list, sample, p, extent, to_light, light);
-        float cosine = vec3_dot(n, to_light);
-        if (cosine <= 0.0f || light[0] + light[1] + light[2] <= 0.0f) {
-            continue;
-        }
-        float weight = cosine * parian_fresnel_transmittancef(cosine, job->eta);
-        vec3_add_scaled(sum, light,
-                        weight * parian_cpu_visibility(job->lights, sample, p, n, scale));
-    }
-    if (list->has_environment) {
-        float sky[3];
-        parian_cpu_environment(job->lights, p, n, job->zonal, job->eta, scale, sky);
-        vec3_add_scaled(sum, sky, 1.0f);
-    }
-}
-
-static void irradiance_piece(void *context, size_t piece)
-{
-    const irradiance_job *job = context;
-    uint32_t first = (uint32_t)piece * TEXEL_PIECE;
-    for (uint32_t t = first; t < first + TEXEL_PIECE && t < job->body->texel_count; t++) {
-        irradiance_of_texel(job, t, job->irradiance[t]);
-    }
-}
-
-void parian_cpu_irradiance(const parian_env *env, const parian_cpu_lights *lights,
-                           const parian_body *body, const parian_placement *at, float eta,
-                           const float zonal[3], float (*irradiance)[3])
-{
-    irradiance_job job = {lights, body, at, eta, zonal, irradiance};
-    parian_par(env, (body->texel_count + TEXEL_PIECE - 1) / TEXEL_PIECE, irradiance_piece, &job);
+    parian_cpu_environment_open(list, n, zonal, open, whole, irradiance);
 }

@@ -35,18 +35,18 @@ void parian_cpu_light_at(const parian_light_list *list, const parian_light_sampl
 float parian_cpu_visibility(const parian_cpu_lights *lights, const parian_light_sample *sample,
                             const float p[3], const float n[3], float scale);
 
-/* Irradiance of the environment with the zonal coefficients of a cosine lobe, and shadows by
- * probes. eta: weigh probes by F_t, or 0 for none. */
+/* Irradiance of the environment's smooth part on a diffuse surface, with the zonal coefficients of
+ * a cosine lobe, and shadows of its probes by shadow maps. */
 void parian_cpu_environment(const parian_cpu_lights *lights, const float p[3], const float n[3],
-                            const float zonal[3], float eta, float scale, float irradiance[3]);
+                            const float zonal[3], float scale, float irradiance[3]);
+
+/* The same for a known share of the probes' light: open is what of whole is not blocked. */
+void parian_cpu_environment_open(const parian_light_list *list, const float n[3],
+                                 const float zonal[3], const float open[3], const float whole[3],
+                                 float irradiance[3]);
 
 /* Radiance of the environment from a direction, from its nine coefficients. */
 void parian_cpu_environment_radiance(const parian_light_list *list, const float direction[3],
                                      float radiance[3]);
-
-/* E of every texel of a body that stands at a place: [texel_count]. */
-void parian_cpu_irradiance(const parian_env *env, const parian_cpu_lights *lights,
-                           const parian_body *body, const parian_placement *at, float eta,
-                           const float zonal[3], float (*irradiance)[3]);
 
 #endif

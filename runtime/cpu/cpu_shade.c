@@ -190,7 +190,7 @@ static void reflect_lights(const parian_shade_desc *desc, float eta, float scale
                         lobe *
                             parian_cpu_visibility(desc->lights, sample, at->p, at->smooth, scale));
     }
-    if (list->has_environment) {
+    if (list->sky_count > 0) {
         float mirrored[3] = {-at->v[0], -at->v[1], -at->v[2]}, sky[3];
         vec3_add_scaled(mirrored, at->n, 2.0f * at->n_v);
         vec3_normalize(mirrored);
@@ -312,9 +312,9 @@ static void shade_surrounding(const parian_shade_desc *desc, uint32_t index, con
                                 parian_cpu_visibility(desc->lights, &list->sample[i], p, n, 1.0f));
         }
     }
-    if (list->has_environment) {
+    if (list->sky_count > 0) {
         float sky[3];
-        parian_cpu_environment(desc->lights, p, n, zonal, 0.0f, 1.0f, sky);
+        parian_cpu_environment(desc->lights, p, n, zonal, 1.0f, sky);
         vec3_add_scaled(out, sky, 1.0f);
     }
     for (int c = 0; c < 3; c++) {

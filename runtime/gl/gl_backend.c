@@ -19,6 +19,7 @@ static void destroy_objects(parian_renderer *renderer, gl_state *state)
     for (uint32_t s = 0; state->surrounding && s < renderer->scene->data.surrounding_count; s++) {
         gl_mesh_destroy(device, &state->surrounding[s]);
     }
+    gl_sets_destroy(renderer);
     gl_texture_destroy(device, &state->light);
     gl_texture_destroy(device, &state->layer);
     gl_texture_destroy(device, &state->image);
@@ -47,21 +48,26 @@ static void gl_destroy(parian_renderer *renderer)
 
 /* ---- the scene ---- */
 
-/* Describe everything that a scene needs. body and surrounding are zeroed. */
+/* Describe everything that a scene needs. body and surrounding are zeroed; tree: NULL to count alone. */
 static parian_result plan_scene(const parian_scene_data *data, gl_body_source *source,
-                                gl_body *body, gl_mesh *surrounding, gl_upload_list *list)
+                                gl_body *body, gl_mesh *surrounding,
+                                const parian_occluder_tree *tree, gl_texture *boxes,
+                                gl_upload_list *list)
 {
+    uint64_t elements = parian_occluder_tree_room(data);
     for (uint32_t b = 0; b < data->body_count; b++) {
         gl_body_plan(&data->bodies[b], &source[b], &body[b], list);
     }
     for (uint32_t s = 0; s < data->surrounding_count; s++) {
         gl_mesh_plan_surrounding(list, &data->surroundings[s], &surrounding[s]);
     }
+    *boxes = gl_vector_describe(elements);
+    gl_upload_texture(list, PARIAN_MEMORY_MESHES, boxes, elements, NULL, tree ? tree->element : NULL);
     return gl_upload_plan_end(list);
 }
 
 static parian_result allocate_scene(const parian_env *env, const parian_scene_data *data,
-                                    gl_state *state)
+                                    const parian_occluder_tree *tree, gl_state *state)
 {
     if (!PARIAN_NEW0(env, state->body, data->body_count) ||
         !PARIAN_NEW0(env, state->surrounding, data->surrounding_count) ||
@@ -69,20 +75,22 @@ static parian_result allocate_scene(const parian_env *env, const parian_scene_da
         return parian_fail(env, PARIAN_E_NOMEM, "no memory for %u bodies", data->body_count);
     }
     state->upload.env = env;
-    return plan_scene(data, state->source, state->body, state->surrounding, &state->upload);
+    return plan_scene(data, state->source, state->body, state->surrounding, tree, &state->tree,
+                      &state->upload);
 }
 
 static parian_result gl_count_scene(const parian_env *env, const parian_scene_data *data,
                                     uint32_t instance_count, parian_memory *memory)
 {
     gl_state state = {.shadow_framebuffer = 0};
-    parian_result result = allocate_scene(env, data, &state);
+    parian_result result = allocate_scene(env, data, NULL, &state);
     if (result == PARIAN_OK) {
         gl_upload_count(&state.upload, memory);
     }
     for (uint32_t i = 0; i < data->body_count; i++) {
         gl_lit_count(&data->bodies[i], instance_count, memory);
     }
+    gl_casters_count(instance_count * data->body_count + data->surrounding_count, memory);
     gl_upload_list_free(&state.upload);
     parian_free(env, state.source);
     parian_free(env, state.body);
@@ -117,7 +125,7 @@ static parian_result gl_upload_scene(parian_renderer *renderer, uint64_t max_byt
 static parian_result plan_upload(parian_renderer *renderer, gl_state *state)
 {
     parian_memory planned = {.total = 0};
-    parian_result result = allocate_scene(&renderer->env, &renderer->scene->data, state);
+    parian_result result = allocate_scene(&renderer->env, &renderer->scene->data, &renderer->tree, state);
     if (result == PARIAN_OK) {
         gl_upload_count(&state->upload, &planned);
         renderer->upload_left = planned.total;
@@ -226,22 +234,31 @@ static parian_result run_shadow(parian_renderer *renderer)
     return result;
 }
 
-static parian_result run_relight(parian_renderer *renderer, parian_pass from)
+/* What follows from E, from a pass on. */
+static void run_transfer(parian_renderer *renderer, parian_pass from)
 {
-    static void (*const passes[])(parian_renderer *) = {
-        gl_irradiance_run, gl_restrict_run, gl_product_run, gl_filter_run, gl_gutter_run};
-    if (from == PARIAN_PASS_SHADOW) {
-        parian_result result = run_shadow(renderer);
-        if (result != PARIAN_OK) {
-            return result;
-        }
-        from = PARIAN_PASS_IRRADIANCE;
-    }
-    for (parian_pass p = from; p <= PARIAN_PASS_GUTTER; p++) {
+    static void (*const passes[])(parian_renderer *) = {gl_restrict_run, gl_product_run,
+                                                        gl_filter_run, gl_gutter_run};
+    for (parian_pass p = from > PARIAN_PASS_RESTRICT ? from : PARIAN_PASS_RESTRICT;
+         p <= PARIAN_PASS_GUTTER; p++) {
         parian_renderer_begin_pass(renderer);
-        passes[p - PARIAN_PASS_IRRADIANCE](renderer);
+        passes[p - PARIAN_PASS_RESTRICT](renderer);
         end_pass(renderer, p);
     }
+}
+
+static parian_result run_relight(parian_renderer *renderer, parian_pass from)
+{
+    parian_result result = from == PARIAN_PASS_SHADOW ? run_shadow(renderer) : PARIAN_OK;
+    if (result != PARIAN_OK) {
+        return result;
+    }
+    if (from <= PARIAN_PASS_IRRADIANCE) {
+        parian_renderer_begin_pass(renderer);
+        gl_irradiance_run(renderer);
+        end_pass(renderer, PARIAN_PASS_IRRADIANCE);
+    }
+    run_transfer(renderer, from);
     return PARIAN_OK;
 }
 
@@ -266,6 +283,20 @@ static parian_result gl_edit(parian_renderer *renderer, uint32_t body, parian_ed
     }
     gl_upload_list_free(&list);
     return gl_device_leave(&state->device, result, "took in another medium");
+}
+
+static parian_result gl_refine(parian_renderer *renderer, uint32_t set)
+{
+    gl_state *state = renderer->state;
+    gl_device_enter(&state->device);
+    parian_result result = gl_set_upload(renderer, set);
+    if (result == PARIAN_OK) {
+        parian_renderer_begin_pass(renderer);
+        gl_irradiance_refine(renderer, set);
+        end_pass(renderer, PARIAN_PASS_IRRADIANCE);
+        run_transfer(renderer, PARIAN_PASS_RESTRICT);
+    }
+    return gl_device_leave(&state->device, result, "refined");
 }
 
 static parian_result gl_draw(parian_renderer *renderer, const parian_draw_desc *desc, bool shade)
@@ -405,6 +436,7 @@ const parian_backend_table parian_gl_backend = {
     .resize = gl_resize,
     .relight = gl_relight,
     .edit = gl_edit,
+    .refine = gl_refine,
     .draw = gl_draw,
     .read_picture = gl_read_picture,
     .read_texels = gl_read_texels,

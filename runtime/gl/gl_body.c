@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "method/atlas_fill.h"
+#include "method/ray_origins.h"
 
 /* ---- atlases, element by element ---- */
 
@@ -99,6 +100,49 @@ static void plan_atlases(gl_upload_list *list, const parian_body *body, gl_body 
     if (body->texel_albedo) {
         plan_atlas(list, body, GL_FORMAT_RGBA32F, copy_albedo, &made->albedo);
     }
+}
+
+/* ---- starts of rays ---- */
+
+static parian_result make_origins(const parian_env *env, void *context)
+{
+    gl_body_source *source = context;
+    if (!PARIAN_NEW(env, source->origin, source->body->texel_count)) {
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for the rays of %u texels",
+                           source->body->texel_count);
+    }
+    parian_ray_origins(env, source->body, NULL, 0, source->origin);
+    return PARIAN_OK;
+}
+
+static void drop_origins(const parian_env *env, void *context)
+{
+    gl_body_source *source = context;
+    parian_free(env, source->origin);
+    source->origin = NULL;
+}
+
+static void copy_origins(const void *context, uint64_t first, uint64_t count, void *to)
+{
+    const gl_body_source *source = context;
+    const parian_body *body = source->body;
+    float(*atlas)[4] = to;
+    memset(atlas, 0, count * sizeof *atlas);
+    for (uint32_t t = parian_find_first(body->texel_index, body->texel_count, first);
+         t < body->texel_count && body->texel_index[t] < first + count; t++) {
+        memcpy(atlas[body->texel_index[t] - first], source->origin[t], sizeof source->origin[0]);
+    }
+}
+
+static void plan_origins(gl_upload_list *list, gl_body_source *source, gl_body *made)
+{
+    const gl_preparation origins = {make_origins, drop_origins, source};
+    uint32_t side = source->body->atlas_size;
+    made->origin = gl_texture_describe(GL_FORMAT_RGBA32F, side, side);
+    gl_upload_prepare_begin(list, origins);
+    gl_upload_texture(list, PARIAN_MEMORY_ATLAS, &made->origin, (uint64_t)side * side, copy_origins,
+                      source);
+    gl_upload_prepare_end(list);
 }
 
 /* ---- gutter ---- */
@@ -283,6 +327,7 @@ void gl_body_plan(const parian_body *body, gl_body_source *source, gl_body *made
     *source = (gl_body_source){.body = body, .made = made};
     gl_mesh_plan_body(list, body, &made->mesh);
     plan_atlases(list, body, made);
+    plan_origins(list, source, made);
     plan_restriction(list, source, made);
     plan_kernels(list, source, made);
     plan_registers(list, body, made);
@@ -349,10 +394,11 @@ parian_result gl_body_set_values(gl_device *device, const parian_body *body,
 void gl_body_destroy(gl_device *device, gl_body *made)
 {
     gl_texture *textures[] = {
-        &made->position,      &made->normal,        &made->barycentric,   &made->info,
-        &made->normal_map,    &made->albedo,        &made->feed_offset,   &made->feed,
-        &made->feed_weight,   &made->kernel,        &made->border,        &made->neighbour,
-        &made->border_kernel, &made->gutter_source, &made->gutter_weight, &made->values};
+        &made->position,      &made->normal,           &made->barycentric,   &made->info,
+        &made->normal_map,    &made->albedo,           &made->feed_offset,   &made->feed,
+        &made->feed_weight,   &made->kernel,           &made->border,        &made->neighbour,
+        &made->border_kernel, &made->gutter_source,    &made->gutter_weight, &made->values,
+        &made->origin,        &made->irradiance_spare, &made->set_origin};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++) {
         gl_texture_destroy(device, textures[i]);
     }

@@ -25,6 +25,9 @@ typedef struct gl_body {
     gl_texture position, normal, barycentric, info;
     gl_texture normal_map, albedo; /* with gutters; absent where the body has none */
     gl_texture values;             /* to paint on the body; absent until they are given */
+    gl_texture origin;             /* where rays of the first set of samples start */
+    gl_texture set_origin,
+        irradiance_spare; /* of another set, and E with it; absent until refined */
     /* Restriction, filter, gutter. */
     gl_texture feed_offset, feed, feed_weight;
     gl_texture kernel, border, neighbour, border_kernel;
@@ -59,6 +62,7 @@ typedef struct gl_body_source {
     gl_body *made;
     parian_kernels kernels;
     parian_restriction restriction;
+    float (*origin)[3]; /* [texel_count] */
     gl_operator_source operators[PARIAN_MAX_OPERATORS];
 } gl_body_source;
 

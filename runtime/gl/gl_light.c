@@ -69,6 +69,9 @@ parian_result gl_lights_upload(parian_renderer *renderer)
         result =
             gl_texture_update(device, &wanted.image, list->image_total, list->image, &state->image);
     }
+    if (result == PARIAN_OK) {
+        result = gl_casters_upload(renderer);
+    }
     return result;
 }
 
@@ -140,6 +143,6 @@ void gl_pass_lights(const parian_renderer *renderer, float scale)
     gl_pass_int(device, "u_light_count", (int)list->sample_count);
     gl_pass_int(device, "u_shadow_size", (int)state->shadow.width);
     gl_pass_float(device, "u_lift", parian_renderer_shadow_lift(renderer, scale));
-    gl_pass_int(device, "u_environment", list->has_environment ? 1 : 0);
+    gl_pass_int(device, "u_environment", list->sky_count > 0 ? 1 : 0);
     gl_pass_vec3(device, "u_sh", PARIAN_SH_COUNT, &list->environment_sh[0][0]);
 }

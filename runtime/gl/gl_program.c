@@ -11,22 +11,22 @@
 
 typedef struct program_parts {
     const char *vertex, *fragment;
-    bool arrays, lights; /* included before the fragment stage */
+    bool arrays, lights, occlusion; /* included before the fragment stage */
 } program_parts;
 
 static const program_parts parts_of[GL_PROGRAM_COUNT] = {
-    [GL_PROGRAM_SHADOW] = {"caster", "shadow", false, false},
-    [GL_PROGRAM_IRRADIANCE] = {"quad", "irradiance", true, true},
-    [GL_PROGRAM_RESTRICT] = {"quad", "restrict", true, false},
-    [GL_PROGRAM_SEGMENT] = {"quad", "segment", true, false},
-    [GL_PROGRAM_ROWS] = {"quad", "rows", true, false},
-    [GL_PROGRAM_FILTER] = {"quad", "filter", true, false},
-    [GL_PROGRAM_GUTTER] = {"quad", "gutter", true, false},
-    [GL_PROGRAM_BODY] = {"mesh", "body", true, true},
-    [GL_PROGRAM_SURROUNDING] = {"mesh", "surrounding", true, true},
-    [GL_PROGRAM_RESOLVE] = {"quad", "resolve", false, false},
-    [GL_PROGRAM_LUMINANCE] = {"quad", "luminance", false, false},
-    [GL_PROGRAM_TONE] = {"quad", "tone", false, false},
+    [GL_PROGRAM_SHADOW] = {"caster", "shadow", false, false, false},
+    [GL_PROGRAM_IRRADIANCE] = {"quad", "irradiance", true, true, true},
+    [GL_PROGRAM_RESTRICT] = {"quad", "restrict", true, false, false},
+    [GL_PROGRAM_SEGMENT] = {"quad", "segment", true, false, false},
+    [GL_PROGRAM_ROWS] = {"quad", "rows", true, false, false},
+    [GL_PROGRAM_FILTER] = {"quad", "filter", true, false, false},
+    [GL_PROGRAM_GUTTER] = {"quad", "gutter", true, false, false},
+    [GL_PROGRAM_BODY] = {"mesh", "body", true, true, false},
+    [GL_PROGRAM_SURROUNDING] = {"mesh", "surrounding", true, true, false},
+    [GL_PROGRAM_RESOLVE] = {"quad", "resolve", false, false, false},
+    [GL_PROGRAM_LUMINANCE] = {"quad", "luminance", false, false, false},
+    [GL_PROGRAM_TONE] = {"quad", "tone", false, false, false},
 };
 
 static const char prologue_core[] = "#version 330 core\n";
@@ -50,14 +50,15 @@ static GLuint compile(gl_device *device, GLenum stage, const program_parts *part
 {
     const parian_gl_api *gl = &device->gl;
     bool vertex = stage == GL_VERTEX_SHADER;
-    const char *texts[4] = {device->es ? prologue_es : prologue_core,
+    const char *texts[5] = {device->es ? prologue_es : prologue_core,
                             !vertex && parts->arrays ? find_text("arrays") : "",
                             !vertex && parts->lights ? find_text("lights") : "",
+                            !vertex && parts->occlusion ? find_text("occlusion") : "",
                             find_text(vertex ? parts->vertex : parts->fragment)};
     char log[512] = "";
     GLint done = 0;
     GLuint shader = gl->CreateShader(stage);
-    gl->ShaderSource(shader, 4, texts, NULL);
+    gl->ShaderSource(shader, 5, texts, NULL);
     gl->CompileShader(shader);
     gl->GetShaderiv(shader, GL_COMPILE_STATUS, &done);
     if (!done) {

@@ -28,6 +28,10 @@ typedef struct gl_state {
     uint32_t lit_count;   /* instances that there is room for */
     gl_mesh *surrounding; /* [surrounding_count] */
     gl_texture light, layer, image, shadow;
+    gl_texture tree, caster; /* what casts shadows, and where it stands */
+    gl_texture set_light;    /* samples of the set that is added */
+    float (
+        *scratch)[4]; /* room for an atlas, or a table of samples; from the first refinement on */
     GLuint shadow_framebuffer;
     gl_picture picture;
     gl_body_source *source; /* [body_count], while the scene is uploaded */
@@ -42,8 +46,16 @@ parian_result gl_shadow_run(parian_renderer *renderer);
 /* scale: of the instance that is lit, 1 for surroundings. */
 void gl_pass_lights(const parian_renderer *renderer, float scale);
 
-/* gl_transfer.c: the passes from E to the shown atlases, each for all bodies of all instances. */
+/* gl_sets.c: where casters stand; samples of a set and starts of its rays; E of
+ * all bodies of all instances. */
+void gl_casters_count(uint32_t count, parian_memory *memory);
+void gl_sets_destroy(parian_renderer *renderer);
+parian_result gl_casters_upload(parian_renderer *renderer);
+parian_result gl_set_upload(parian_renderer *renderer, uint32_t set);
 void gl_irradiance_run(parian_renderer *renderer);
+void gl_irradiance_refine(parian_renderer *renderer, uint32_t set);
+
+/* gl_transfer.c: the passes from E to the shown atlases, each for all bodies of all instances. */
 void gl_restrict_run(parian_renderer *renderer);
 void gl_product_run(parian_renderer *renderer);
 void gl_filter_run(parian_renderer *renderer);

@@ -1,5 +1,4 @@
-/* gl_transfer.c - the passes from lights to scattered radiosity, all gathers. C: cpu/cpu_lights.c,
- * cpu_transfer.c.
+/* gl_transfer.c - the passes from E to scattered radiosity, all gathers. C: cpu/cpu_transfer.c.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -7,8 +6,6 @@
 
 /* One body of one instance, on which a pass works. */
 typedef struct pass_body {
-    const parian_placement *at;
-    const parian_body_optics *optics;
     const parian_body *data;
     gl_body *body;
     gl_lit *lit;
@@ -18,8 +15,8 @@ static pass_body find_body(parian_renderer *renderer, uint32_t instance, uint32_
 {
     gl_state *state = renderer->state;
     const parian_scene_data *data = &renderer->scene->data;
-    return (pass_body){&renderer->instances[instance], &renderer->optics[b], &data->bodies[b],
-                       &state->body[b], &state->lit[instance * data->body_count + b]};
+    return (pass_body){&data->bodies[b], &state->body[b],
+                       &state->lit[instance * data->body_count + b]};
 }
 
 static void run_all(parian_renderer *renderer, void (*run)(parian_renderer *, const pass_body *))
@@ -30,26 +27,6 @@ static void run_all(parian_renderer *renderer, void (*run)(parian_renderer *, co
             run(renderer, &one);
         }
     }
-}
-
-static void light_body(parian_renderer *renderer, const pass_body *one)
-{
-    gl_device *device = &((gl_state *)renderer->state)->device;
-    const gl_texture *target = &one->lit->irradiance;
-    gl_pass_begin(device, GL_PROGRAM_IRRADIANCE, &target, 1);
-    gl_pass_lights(renderer, one->at->scale);
-    gl_pass_texture(device, "u_position", &one->body->position);
-    gl_pass_texture(device, "u_normal", &one->body->normal);
-    gl_pass_mat4(device, "u_model", one->at->model);
-    gl_pass_float(device, "u_scale", one->at->scale);
-    gl_pass_float(device, "u_eta", one->optics->eta);
-    gl_pass_vec3(device, "u_zonal", 1, one->optics->zonal_transmit);
-    gl_pass_quad(device);
-}
-
-void gl_irradiance_run(parian_renderer *renderer)
-{
-    run_all(renderer, light_body);
 }
 
 static void restrict_body(parian_renderer *renderer, const pass_body *one)

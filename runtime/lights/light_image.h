@@ -1,5 +1,4 @@
-/* light_image.h - mip levels of projected pictures, and spherical harmonics and probes of
- * environments.
+/* light_image.h - mip levels of projected pictures, and spherical harmonics.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -13,12 +12,6 @@ uint64_t parian_image_pixel_total(uint32_t width, uint32_t height);
 /* Fill [parian_image_pixel_total] pixels: level 0 is the picture, each next one the area-weighted
  * mean of the one before. */
 void parian_image_build_levels(const parian_light_image *image, float (*pixel)[4]);
-
-/* Add an environment light to coefficients of radiance, and give its probes: directions in which
- * light travels and the irradiance that each stands for. Constant without an image. The picture's
- * centre column looks along -z, its right quarter along +x, its upper edge along +y. */
-void parian_environment_project(const parian_light *light, float sh[PARIAN_SH_COUNT][3],
-                                parian_light_sample probe[PARIAN_ENVIRONMENT_PROBES]);
 
 /* The nine real spherical harmonics of a unit direction. */
 void parian_sh_evaluate(const float direction[3], float y[PARIAN_SH_COUNT]);

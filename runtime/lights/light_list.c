@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/small_maths.h"
 #include "lights/light_image.h"
+#include "lights/sky_cells.h"
 #include "vec3.h"
 
 static const char *const light_type_names[] = {"point", "directional", "spot", "rect",
@@ -98,13 +99,14 @@ static parian_result check_lights(const parian_env *env, const parian_light *lig
     return PARIAN_OK;
 }
 
-static size_t sample_count_of(const parian_light *light)
+/* At most; environments with much black have fewer. */
+static size_t sample_count_of(const parian_light *light, uint32_t sky_cells)
 {
     switch (light->type) {
     case PARIAN_LIGHT_RECT:
         return PARIAN_RECT_GRID * PARIAN_RECT_GRID;
     case PARIAN_LIGHT_ENVIRONMENT:
-        return PARIAN_ENVIRONMENT_PROBES;
+        return sky_cells;
     default:
         return 1;
     }
@@ -136,13 +138,19 @@ static void make_simple(const parian_light *light, parian_light_sample *sample)
 
 /* Gauss-Legendre nodes: the sum over patches is exact to a few per mille down to distances of a
  * side. */
-static void make_rect(const parian_light *light, parian_light_sample *samples)
+static void make_rect(const parian_light *light, parian_light_sample *samples,
+                      parian_rect_source *source)
 {
     double node[PARIAN_RECT_GRID], weight[PARIAN_RECT_GRID];
     float normal[3];
     vec3_cross(normal, light->axis_u, light->axis_v);
     float area = 4.0f * vec3_length(normal);
     vec3_normalize(normal);
+    vec3_copy(source->position, light->position);
+    vec3_copy(source->axis_u, light->axis_u);
+    vec3_copy(source->axis_v, light->axis_v);
+    vec3_copy(source->power, light->color);
+    vec3_scale(source->power, area);
     parian_gauss_legendre(PARIAN_RECT_GRID, node, weight);
     for (int i = 0; i < PARIAN_RECT_GRID * PARIAN_RECT_GRID; i++) {
         parian_light_sample *sample = &samples[i];
@@ -172,50 +180,84 @@ static void add_image(parian_light_list *list, const parian_light *light,
     list->image_total += (uint32_t)parian_image_pixel_total(image->width, image->height);
 }
 
-static void make_samples(parian_light_list *list, const parian_light *lights, size_t count)
+static parian_result make_samples(const parian_env *env, parian_light_list *list,
+                                  const parian_light *lights, size_t count, uint32_t sky_cells)
 {
     for (size_t i = 0; i < count; i++) {
         parian_light_sample *sample = list->sample + list->sample_count;
+        uint32_t added = 1;
         if (lights[i].type == PARIAN_LIGHT_RECT) {
-            make_rect(&lights[i], sample);
+            parian_rect_source *source = &list->rect[list->rect_count++];
+            source->first_sample = list->sample_count;
+            make_rect(&lights[i], sample, source);
+            added = PARIAN_RECT_GRID * PARIAN_RECT_GRID;
         } else if (lights[i].type == PARIAN_LIGHT_ENVIRONMENT) {
-            list->has_environment = true;
-            parian_environment_project(&lights[i], list->environment_sh, sample);
+            parian_sky *sky = &list->sky[list->sky_count];
+            parian_result result = parian_sky_build(env, &lights[i], sky_cells, sky);
+            if (result != PARIAN_OK) {
+                return result;
+            }
+            list->sky_count++;
+            sky->first_sample = list->sample_count;
+            parian_sky_samples(sky, sample, list->environment_sh);
+            added = sky->cell_count;
         } else {
             make_simple(&lights[i], sample);
             add_image(list, &lights[i], sample);
         }
-        list->sample_count += (uint32_t)sample_count_of(&lights[i]);
+        list->sample_count += added;
     }
+    return PARIAN_OK;
+}
+
+/* What lights need: samples, picture pixels, rectangles, environments. */
+typedef struct light_needs {
+    size_t samples, rects, skies;
+    uint64_t pixels;
+} light_needs;
+
+static light_needs count_needs(const parian_light *lights, size_t count, uint32_t sky_cells)
+{
+    light_needs needs = {0};
+    for (size_t i = 0; i < count; i++) {
+        needs.samples += sample_count_of(&lights[i], sky_cells);
+        needs.rects += lights[i].type == PARIAN_LIGHT_RECT;
+        needs.skies += lights[i].type == PARIAN_LIGHT_ENVIRONMENT;
+        if (lights[i].type == PARIAN_LIGHT_SPOT && lights[i].image.pixel) {
+            needs.pixels += parian_image_pixel_total(lights[i].image.width, lights[i].image.height);
+        }
+    }
+    return needs;
 }
 
 parian_result parian_light_list_build(const parian_env *env, const parian_light *lights,
-                                      size_t count, parian_light_list *list)
+                                      size_t count, uint32_t sky_cells, parian_light_list *list)
 {
     parian_light_list made = {0};
-    size_t samples = 0;
-    uint64_t pixels = 0;
     parian_result result = check_lights(env, lights, count);
     if (result != PARIAN_OK) {
         return result;
     }
-    for (size_t i = 0; i < count; i++) {
-        samples += sample_count_of(&lights[i]);
-        if (lights[i].type == PARIAN_LIGHT_SPOT && lights[i].image.pixel) {
-            pixels += parian_image_pixel_total(lights[i].image.width, lights[i].image.height);
-        }
-    }
-    if (samples > PARIAN_LIGHT_MAX || pixels > PARIAN_IMAGE_PIXEL_MAX) {
+    sky_cells = sky_cells ? sky_cells : PARIAN_SKY_CELLS;
+    light_needs needs = count_needs(lights, count, sky_cells);
+    if (needs.samples > PARIAN_LIGHT_MAX || needs.pixels > PARIAN_IMAGE_PIXEL_MAX) {
         return parian_fail(
             env, PARIAN_E_LIMIT,
             "lights need %zu samples and %llu picture pixels, at most %d and %d are possible",
-            samples, (unsigned long long)pixels, PARIAN_LIGHT_MAX, PARIAN_IMAGE_PIXEL_MAX);
+            needs.samples, (unsigned long long)needs.pixels, PARIAN_LIGHT_MAX,
+            PARIAN_IMAGE_PIXEL_MAX);
     }
-    if (!PARIAN_NEW0(env, made.sample, samples) || !PARIAN_NEW(env, made.image, (size_t)pixels)) {
+    if (!PARIAN_NEW0(env, made.sample, needs.samples) ||
+        !PARIAN_NEW0(env, made.rect, needs.rects) || !PARIAN_NEW0(env, made.sky, needs.skies) ||
+        !PARIAN_NEW(env, made.image, (size_t)needs.pixels)) {
+        result = parian_fail(env, PARIAN_E_NOMEM, "no memory for %zu light samples", needs.samples);
+    } else {
+        result = make_samples(env, &made, lights, count, sky_cells);
+    }
+    if (result != PARIAN_OK) {
         parian_light_list_free(env, &made);
-        return parian_fail(env, PARIAN_E_NOMEM, "no memory for %zu light samples", samples);
+        return result;
     }
-    make_samples(&made, lights, count);
     *list = made;
     return PARIAN_OK;
 }
@@ -223,6 +265,11 @@ parian_result parian_light_list_build(const parian_env *env, const parian_light 
 void parian_light_list_free(const parian_env *env, parian_light_list *list)
 {
     if (list) {
+        for (uint32_t s = 0; list->sky && s < list->sky_count; s++) {
+            parian_sky_free(env, &list->sky[s]);
+        }
+        parian_free(env, list->sky);
+        parian_free(env, list->rect);
         parian_free(env, list->sample);
         parian_free(env, list->image);
         parian_free(env, list->layer);
@@ -241,10 +288,13 @@ static bool sample_equal(const parian_light_sample *a, const parian_light_sample
 bool parian_light_list_equal(const parian_light_list *a, const parian_light_list *b)
 {
     bool equal = a->sample_count == b->sample_count && a->image_total == b->image_total &&
-                 a->has_environment == b->has_environment &&
+                 a->sky_count == b->sky_count &&
                  memcmp(a->environment_sh, b->environment_sh, sizeof a->environment_sh) == 0;
     for (uint32_t i = 0; equal && i < a->sample_count; i++) {
         equal = sample_equal(&a->sample[i], &b->sample[i]);
+    }
+    for (uint32_t k = 0; equal && k < a->sky_count; k++) {
+        equal = parian_sky_equal(&a->sky[k], &b->sky[k]);
     }
     return equal &&
            (!a->image_total || memcmp(a->image, b->image, a->image_total * sizeof *a->image) == 0);
@@ -256,13 +306,11 @@ static void put(float to[4], const float v[3], float w)
     to[3] = w;
 }
 
-void parian_light_list_tables(const parian_light_list *list, float (*samples)[4],
-                              float (*layers)[4])
+void parian_light_sample_table(const parian_light_sample *sample, uint32_t count, float (*row)[4])
 {
-    memset(samples, 0, (size_t)list->sample_count * PARIAN_LIGHT_ROW * sizeof *samples);
-    for (uint32_t i = 0; i < list->sample_count; i++) {
-        const parian_light_sample *s = &list->sample[i];
-        float(*row)[4] = samples + (size_t)i * PARIAN_LIGHT_ROW;
+    memset(row, 0, (size_t)count * PARIAN_LIGHT_ROW * sizeof *row);
+    for (uint32_t i = 0; i < count; i++, row += PARIAN_LIGHT_ROW) {
+        const parian_light_sample *s = &sample[i];
         put(row[0], s->position, (float)s->kind);
         put(row[1], s->direction, s->cos_inner);
         put(row[2], s->color, s->cos_outer);
@@ -272,6 +320,12 @@ void parian_light_list_tables(const parian_light_list *list, float (*samples)[4]
         row[5][2] = (float)s->image_height, row[5][3] = (float)s->image_levels;
         row[6][0] = (float)s->layer_first, row[6][1] = (float)s->layer_count;
     }
+}
+
+void parian_light_list_tables(const parian_light_list *list, float (*samples)[4],
+                              float (*layers)[4])
+{
+    parian_light_sample_table(list->sample, list->sample_count, samples);
     memset(layers, 0, (size_t)list->layer_count * PARIAN_LAYER_ROW * sizeof *layers);
     for (uint32_t i = 0; i < list->layer_count; i++) {
         const parian_shadow_layer *layer = &list->layer[i];

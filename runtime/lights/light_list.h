@@ -2,8 +2,9 @@
  * read.
  *
  * A light becomes one sample (point, directional, spot) or several (a rectangle is a grid of small
- * emitters; an environment is its nine spherical-harmonic coefficients, which give the unshadowed
- * irradiance, and directional probes, which tell how much of it is blocked).
+ * emitters; an environment is cut into cells: small bright ones are directional lights, of the
+ * others nine spherical-harmonic coefficients give the unshadowed irradiance, and directional
+ * probes tell how much of it is blocked). sample_set.h makes other samples of the same lights.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -27,8 +28,8 @@ typedef enum parian_sample_kind {
 } parian_sample_kind;
 
 enum {
-    PARIAN_RECT_GRID = 4, /* a rectangle is cut into 4 x 4 patches */
-    PARIAN_ENVIRONMENT_PROBES = 32,
+    PARIAN_RECT_GRID = 4,  /* a rectangle is cut into 4 x 4 patches */
+    PARIAN_SKY_CELLS = 64, /* of one environment, where nothing else is asked for */
     PARIAN_SH_COUNT = 9,
     PARIAN_LIGHT_MAX = 256,          /* lights, and samples, of one renderer */
     PARIAN_IMAGE_PIXEL_MAX = 1 << 24 /* of all projected pictures with their mip levels */
@@ -55,22 +56,33 @@ typedef struct parian_shadow_layer {
     bool perspective;
 } parian_shadow_layer;
 
+/* A rectangle, for other points of it. */
+typedef struct parian_rect_source {
+    float position[3], axis_u[3], axis_v[3];
+    float power[3]; /* radiance times area, W/sr */
+    uint32_t first_sample;
+} parian_rect_source;
+
+typedef struct parian_sky parian_sky; /* sky_cells.h */
+
 typedef struct parian_light_list {
     parian_light_sample *sample;
     uint32_t sample_count;
     float (*image)[4]; /* [image_total] pictures with all their mip levels, one after the other */
     uint32_t image_total;
-    bool has_environment;
+    parian_rect_source *rect;
+    parian_sky *sky;
+    uint32_t rect_count, sky_count;
     float environment_sh[PARIAN_SH_COUNT][3]; /* radiance */
     parian_shadow_layer *layer;
     uint32_t layer_count, shadow_size;
 } parian_light_list;
 
-/* Check the lights and turn them into samples; pictures are copied. Shadow layers are not made
- * here. Errors: PARIAN_E_ARGUMENT (light index and what is wrong), PARIAN_E_NOMEM, PARIAN_E_LIMIT.
- */
+/* Check the lights and turn them into samples; pictures are copied. sky_cells: of one environment,
+ * 0 takes PARIAN_SKY_CELLS. Shadow layers are not made here. Errors: PARIAN_E_ARGUMENT (light index
+ * and what is wrong), PARIAN_E_NOMEM, PARIAN_E_LIMIT. */
 parian_result parian_light_list_build(const parian_env *env, const parian_light *lights,
-                                      size_t count, parian_light_list *list);
+                                      size_t count, uint32_t sky_cells, parian_light_list *list);
 void parian_light_list_free(const parian_env *env, parian_light_list *list);
 
 /* Whether two lists shine alike; their shadow layers do not matter. */
@@ -81,9 +93,9 @@ typedef struct parian_ball {
     float center[3], radius;
 } parian_ball;
 
-/* Fit shadow maps: one that covers the bodies as tightly as possible, and one for everything where
- * there are surroundings; six for a light that sits inside. corners: the box of everything that
- * casts. */
+/* Fit the shadow maps of shading: one that covers the bodies as tightly as possible, and one for
+ * everything where there are surroundings; six for a light that sits inside. Probes get maps only
+ * with surroundings, which alone ask for them. corners: the box of everything that casts. */
 parian_result parian_shadow_fit(const parian_env *env, parian_light_list *list,
                                 uint32_t shadow_size, uint64_t memory_max,
                                 const parian_ball *bodies, const parian_ball *everything,
@@ -94,6 +106,8 @@ parian_result parian_shadow_fit(const parian_env *env, parian_light_list *list,
 enum { PARIAN_LIGHT_ROW = 8, PARIAN_LAYER_ROW = 8 };
 void parian_light_list_tables(const parian_light_list *list, float (*samples)[4],
                               float (*layers)[4]);
+/* The samples' table alone, of any samples of the list. */
+void parian_light_sample_table(const parian_light_sample *sample, uint32_t count, float (*row)[4]);
 
 /* Mip levels of a picture: dimensions of a level, and pixels of all levels together. */
 uint32_t parian_image_level_side(uint32_t side, uint32_t level);

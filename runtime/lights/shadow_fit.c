@@ -127,6 +127,9 @@ static uint32_t fit_sample(const fit_scene *scene, const parian_light_sample *sa
                            const parian_ball *bodies, const parian_ball *everything,
                            parian_shadow_layer *layers)
 {
+    if (sample->kind == PARIAN_SAMPLE_PROBE && !everything) {
+        return 0;
+    }
     if (sample->kind == PARIAN_SAMPLE_DIRECTIONAL || sample->kind == PARIAN_SAMPLE_PROBE) {
         fit_parallel(scene, sample->direction, bodies, layers);
         if (!everything) {

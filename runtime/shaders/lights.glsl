@@ -174,8 +174,15 @@ vec3 evaluate_sh(vec3 d, vec3 zonal)
     return max(sum, 0.0);
 }
 
-// Irradiance of the environment; probes tell how much of it is blocked. eta 0: no Fresnel.
-vec3 environment_at(vec3 p, vec3 n, vec3 zonal, float eta)
+// Share of the probes' light that is not blocked.
+vec3 open_share(vec3 open, vec3 whole)
+{
+    return vec3(whole.r > 0.0 ? open.r / whole.r : 1.0, whole.g > 0.0 ? open.g / whole.g : 1.0,
+                whole.b > 0.0 ? open.b / whole.b : 1.0);
+}
+
+// Irradiance of the environment's smooth part; probes tell how much of it is blocked, by shadow maps.
+vec3 environment_at(vec3 p, vec3 n)
 {
     vec3 open = vec3(0.0), whole = vec3(0.0);
     for (int i = 0; i < u_light_count; i++) {
@@ -184,12 +191,9 @@ vec3 environment_at(vec3 p, vec3 n, vec3 zonal, float eta)
         if (light_kind(i) != KIND_PROBE || cosine <= 0.0) {
             continue;
         }
-        float weight = cosine * (eta > 0.0 ? fresnel_transmit(cosine, eta) : 1.0);
-        vec3 part = weight * texelFetch(u_light, ivec2(2, i), 0).rgb;
+        vec3 part = cosine * texelFetch(u_light, ivec2(2, i), 0).rgb;
         whole += part;
         open += part * visibility(i, p, n);
     }
-    vec3 share = vec3(whole.r > 0.0 ? open.r / whole.r : 1.0, whole.g > 0.0 ? open.g / whole.g : 1.0,
-                      whole.b > 0.0 ? open.b / whole.b : 1.0);
-    return evaluate_sh(n, zonal) * share;
+    return evaluate_sh(n, vec3(PI, 2.09439510, 0.785398163)) * open_share(open, whole);
 }

@@ -28,7 +28,7 @@ void main()
         }
     }
     if (u_environment != 0) {
-        sum += environment_at(v_position, n, vec3(PI, 2.09439510, 0.785398163), 0.0);
+        sum += environment_at(v_position, n);
     }
     o_radiance = vec4(sum * u_reflectance / PI, 1.0);
 }

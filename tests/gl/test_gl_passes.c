@@ -172,6 +172,12 @@ static void test_light_types(void **state)
         assert_int_equal(parian_renderer_set_lights(gl, &lights[i], 1), PARIAN_OK);
         assert_int_equal(parian_renderer_set_lights(cpu, &lights[i], 1), PARIAN_OK);
         compare_texels(env, gl, cpu, 0.005);
+        for (uint32_t set = 1; set < 4; set++) {
+            assert_int_equal(parian_renderer_set_count(gl), set);
+            assert_int_equal(parian_renderer_refine(gl), PARIAN_OK);
+            assert_int_equal(parian_renderer_refine(cpu), PARIAN_OK);
+        }
+        compare_texels(env, gl, cpu, 0.005);
     }
     parian_renderer_destroy(gl);
     parian_renderer_destroy(cpu);

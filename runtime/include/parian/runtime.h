@@ -92,7 +92,8 @@ typedef struct parian_renderer_desc {
     /* GL: function loading of the current context, which must be OpenGL 3.3 core or OpenGL ES 3.0 or later
      * and current in every call on this renderer. */
     void *(*get_proc_address)(const char *name);
-    uint32_t shadow_size;     /* side of a shadow map, texels; 0 takes 2048 */
+    uint32_t shadow_size;     /* side of a shadow map (of shading), texels; 0 takes 2048 */
+    uint32_t environment_lights; /* directions that stand for an environment, at most 256; 0 takes 64 */
     uint64_t memory_budget;   /* bytes of GL memory (see parian_memory below); 0 is no limit */
     bool deferred_upload;     /* upload nothing yet: parian_renderer_upload does, a slice at a time */
 } parian_renderer_desc;
@@ -209,6 +210,16 @@ parian_result parian_renderer_relight(parian_renderer *renderer);
 
 /* Take everything for changed, so that the next relight and draw run every pass: for measuring. */
 void parian_renderer_invalidate(parian_renderer *renderer);
+
+/* Sets of samples. Relighting asks at one set: the centroid of each texel, fixed points of rectangles, mean
+ * directions of an environment's parts. Each call of refine takes one more set into the mean of E and brings B up
+ * to date: other points of texels and rectangles, other directions. So E approaches its mean over each texel and
+ * the integral over lights while nothing moves; after a change of lights it relights, that is, begins again.
+ * Highlights and surroundings keep the first set. Allocates in the first call alone.
+ * Errors: those of relighting. Threads: the context's thread. */
+parian_result parian_renderer_refine(parian_renderer *renderer);
+/* Sets in E so far; 0 where the lights changed since. */
+uint32_t parian_renderer_set_count(const parian_renderer *renderer);
 
 /* Column-major matrices as OpenGL takes them. */
 typedef struct parian_camera {
