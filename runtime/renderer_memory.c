@@ -139,8 +139,7 @@ static parian_result estimate_frame(const parian_renderer *renderer, const paria
                                     parian_memory *memory)
 {
     parian_light_list list;
-    parian_result result =
-        parian_light_list_build(&renderer->env, desc->lights, desc->light_count,
+    parian_result result = parian_light_list_build(&renderer->env, desc->lights, desc->light_count,
                                                    renderer->desc.environment_lights, &list);
     if (result != PARIAN_OK) {
         return result;

@@ -16,7 +16,7 @@ typedef struct parian_raster_desc {
     const uint32_t (*triangle)[3];
     const float (*position)[3];
     float row_x[4], row_y[4], row_w[4]; /* clip coordinates: x = row_x . (p, 1) and so on */
-    float near_w; /* what has a smaller w is not seen; 0 for no such limit */
+    float near_w;                       /* what has a smaller w is not seen; 0 for no such limit */
     /* Called for each covered pixel centre, by one thread for a pixel, in the order of the
      * triangles. share[k]: barycentric of corner k divided by w there; their sum is 1 / w > 0. */
     void (*fragment)(void *context, uint32_t pixel, uint32_t triangle, const float share[3]);

@@ -48,7 +48,8 @@ static void gl_destroy(parian_renderer *renderer)
 
 /* ---- the scene ---- */
 
-/* Describe everything that a scene needs. body and surrounding are zeroed; tree: NULL to count alone. */
+/* Describe everything that a scene needs. body and surrounding are zeroed; tree: NULL to count
+ * alone. */
 static parian_result plan_scene(const parian_scene_data *data, gl_body_source *source,
                                 gl_body *body, gl_mesh *surrounding,
                                 const parian_occluder_tree *tree, gl_texture *boxes,
@@ -62,7 +63,8 @@ static parian_result plan_scene(const parian_scene_data *data, gl_body_source *s
         gl_mesh_plan_surrounding(list, &data->surroundings[s], &surrounding[s]);
     }
     *boxes = gl_vector_describe(elements);
-    gl_upload_texture(list, PARIAN_MEMORY_MESHES, boxes, elements, NULL, tree ? tree->element : NULL);
+    gl_upload_texture(list, PARIAN_MEMORY_MESHES, boxes, elements, NULL,
+                      tree ? tree->element : NULL);
     return gl_upload_plan_end(list);
 }
 
@@ -125,7 +127,8 @@ static parian_result gl_upload_scene(parian_renderer *renderer, uint64_t max_byt
 static parian_result plan_upload(parian_renderer *renderer, gl_state *state)
 {
     parian_memory planned = {.total = 0};
-    parian_result result = allocate_scene(&renderer->env, &renderer->scene->data, &renderer->tree, state);
+    parian_result result =
+        allocate_scene(&renderer->env, &renderer->scene->data, &renderer->tree, state);
     if (result == PARIAN_OK) {
         gl_upload_count(&state->upload, &planned);
         renderer->upload_left = planned.total;

@@ -40,7 +40,8 @@ parian_caster parian_caster_place(const parian_occluder_tree *tree, uint32_t mes
  * [Wald07], binned surface area heuristic */
 parian_result parian_occluder_tree_build(const parian_env *env, const parian_scene_data *scene,
                                          parian_occluder_tree *tree);
-/* Elements that there is room for: an upper bound that needs no tree, a multiple of PARIAN_OCCLUDER_ROW. */
+/* Elements that there is room for: an upper bound that needs no tree, a multiple of
+ * PARIAN_OCCLUDER_ROW. */
 uint64_t parian_occluder_tree_room(const parian_scene_data *scene);
 void parian_occluder_tree_free(const parian_env *env, parian_occluder_tree *tree);
 

@@ -10,7 +10,7 @@
 #include "support/lit_scene.h"
 
 static const float RADIUS = 0.02f;
-enum { TEXEL_STEP = 61, QUADRATURE = 16, SKY_WIDTH = 32, SKY_HEIGHT = 16, SET_COUNT = 32 };
+enum { TEXEL_STEP = 31, QUADRATURE = 16, SKY_WIDTH = 32, SKY_HEIGHT = 16, SET_COUNT = 16 };
 
 static bool ray_hits(const parian_body *body, const float origin[3], const double direction[3],
                      double far)
@@ -44,8 +44,8 @@ typedef struct truth_job {
     double *truth; /* [texel_count] of the first channel; of every TEXEL_STEP-th */
 } truth_job;
 
-/* E by light of unit radiance over a solid angle, from a place (near) or a direction: cosine at the centroid, the ray
- * from where rays start. */
+/* E by light of unit radiance over a solid angle, from a place (near) or a direction: cosine at the
+ * centroid, the ray from where rays start. */
 static double arriving(const truth_job *job, uint32_t t, const double source[3], bool near,
                        double solid_angle)
 {
@@ -143,7 +143,7 @@ static double error_of(const parian_scene *scene, parian_renderer *renderer, con
 static parian_scene *make_figure(const parian_env *env)
 {
     parian_mesh mesh = {0};
-    test_lit_desc desc = {.cut = 8};
+    test_lit_desc desc = {.cut = 4};
     assert_int_equal(test_figure(env, (double)RADIUS, 8, &mesh), PARIAN_OK);
     return lit_scene(env, &mesh, &desc);
 }
@@ -199,7 +199,7 @@ static void test_sky(void **state)
         int x = i % SKY_WIDTH, y = i / SKY_WIDTH;
         bool sun = x >= 20 && x < 22 && y >= 4 && y < 6;
         float up = 1.0f - (float)y / SKY_HEIGHT;
-        pixel[i][0] = 0.2f + 0.8f * up + 0.3f * sinf(0.2f * (float)x) + (sun ? 50.0f : 0.0f);
+        pixel[i][0] = 0.35f + 0.8f * up + 0.3f * sinf(0.2f * (float)x) + (sun ? 50.0f : 0.0f);
         pixel[i][1] = 0.3f + up + (sun ? 40.0f : 0.0f);
         pixel[i][2] = 0.5f + 1.5f * up + (sun ? 30.0f : 0.0f);
     }
