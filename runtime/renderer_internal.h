@@ -8,8 +8,8 @@
 #include "core/body.h"
 #include "frame_memory.h"
 #include "lights/light_list.h"
-#include "method/edited_body.h"
 #include "lights/occluder_tree.h"
+#include "method/edited_body.h"
 #include "method/ray_origins.h"
 #include "parian/runtime.h"
 #include "placement.h"
@@ -52,9 +52,6 @@ typedef struct parian_backend_table {
     /* Take over another medium's factors, weights and kernels of one body; edited is then empty.
      * After PARIAN_E_DEVICE the body's transport is undefined. */
     parian_result (*edit)(parian_renderer *renderer, uint32_t body, parian_edited_body *edited);
-    /* The lights changed: make E, the registers, the local and global part, and their gutters, of
-     * all instances. */
-    parian_result (*relight)(parian_renderer *renderer);
     /* Take set `set` > 0 of samples (renderer->varied) into the mean of E, and what follows from E.
      */
     parian_result (*refine)(parian_renderer *renderer, uint32_t set);
