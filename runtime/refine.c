@@ -22,7 +22,9 @@ parian_result parian_renderer_prepare_sets(parian_renderer *renderer)
         return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for the rays of %u texels",
                            texels);
     }
-    return parian_occluder_tree_build(&renderer->env, data, &renderer->tree);
+    parian_result result = parian_occluder_tree_build(&renderer->env, data, &renderer->tree);
+    parian_frame_memory_trim(&renderer->frame_memory); /* frames do not need what sorting did */
+    return result;
 }
 
 void parian_renderer_free_sets(parian_renderer *renderer)
