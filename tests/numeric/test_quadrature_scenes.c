@@ -98,7 +98,7 @@ static void bodies_keep_their_own_media(void **state)
 }
 
 /* The printed fit of F_dr changes a plane's total by some 1e-4; with the same places the noise of
- * both runs is the same to first order, so that a fiftieth of the change is seen. */
+ * both runs is the same to first order, so that a five-hundredth of the change is seen. */
 static void fit_reaches_shared_and_fresh_places(void **state)
 {
     (void)state;
@@ -122,7 +122,7 @@ static void fit_reaches_shared_and_fresh_places(void **state)
         double found = result[1].radiosity[0][c] / result[0].radiosity[0][c] - 1;
         print_message("fit: %.3e, expected %.3e\n", found, change);
         assert_true(fabs(change) > 2e-5);
-        assert_true(fabs(found - change) < 0.02 * fabs(change));
+        assert_true(fabs(found - change) < 2e-3 * fabs(change));
     }
     parian_reference_result_free(test_env(0), &result[0]);
     parian_reference_result_free(test_env(0), &result[1]);
@@ -188,8 +188,8 @@ static void seeds_reach_all_draws(void **state)
                             sizeof result[0].radiosity[0]);
     size_t same = 0;
     for (size_t i = 0; i < 12; i++) {
-        same += memcmp(receivers[0].position[i], receivers[1].position[i],
-                       sizeof receivers[0].position[i]) == 0;
+        same += receivers[0].triangle[i] == receivers[1].triangle[i] &&
+                receivers[0].barycentric[i][0] == receivers[1].barycentric[i][0];
     }
     assert_int_equal(same, 0);
     for (int s = 0; s < 2; s++) {
