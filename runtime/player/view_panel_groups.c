@@ -57,7 +57,8 @@ void parian_view_group_asset(parian_panel *panel, parian_view_state *state)
         describe_body(panel, state, b);
     }
     if (app->info.surrounding_count) {
-        parian_panel_text(panel, "%u meshes around", app->info.surrounding_count);
+        parian_panel_text(panel, "%u mesh%s around", app->info.surrounding_count,
+                          app->info.surrounding_count > 1 ? "es" : "");
     }
 }
 
