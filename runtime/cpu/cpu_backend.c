@@ -319,7 +319,6 @@ static void run_irradiance(parian_renderer *renderer, const parian_light_sample 
         desc.body = &data->bodies[b];
         desc.origin = parian_renderer_origins(renderer, b, set);
         desc.eta = renderer->optics[b].eta;
-        desc.zonal = renderer->optics[b].zonal_transmit;
         for (uint32_t i = 0; i < renderer->instance_count; i++) {
             desc.at = &renderer->instances[i];
             desc.own_first = i * data->body_count;

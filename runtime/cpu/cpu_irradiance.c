@@ -33,32 +33,22 @@ static void irradiance_of_texel(const parian_irradiance_desc *desc, uint32_t t, 
 {
     const float *own = desc->origin[t];
     float extent = sqrtf(desc->body->texel_area[t]) * desc->at->scale;
-    float p[3], n[3], origin[3], open[3] = {0}, whole[3] = {0};
+    float p[3], n[3], origin[3];
     placement_point(desc->at, desc->body->texel_position[t], p);
     placement_point(desc->at, own, origin);
     placement_normal(desc->at, desc->body->texel_normal[t], n);
     vec3_set(sum, 0.0f);
     for (uint32_t i = 0; i < desc->list->sample_count; i++) {
         const parian_light_sample *sample = &desc->sample[i];
-        bool probe = sample->kind == PARIAN_SAMPLE_PROBE;
         float to_light[3], light[3];
         parian_cpu_light_at(desc->list, sample, p, extent, to_light, light);
         float cosine = vec3_dot(n, to_light);
         if (cosine <= 0.0f || light[0] + light[1] + light[2] <= 0.0f) {
             continue;
         }
-        vec3_scale(light, cosine * parian_fresnel_transmittancef(cosine, desc->eta));
-        if (probe) {
-            vec3_add_scaled(whole, light, 1.0f);
-        }
         if (!is_hidden(desc, sample, own, origin, to_light)) {
-            vec3_add_scaled(probe ? open : sum, light, 1.0f);
+            vec3_add_scaled(sum, light, cosine * parian_fresnel_transmittancef(cosine, desc->eta));
         }
-    }
-    if (desc->share >= 1.0f && desc->list->sky_count > 0) {
-        float sky[3];
-        parian_cpu_environment_open(desc->list, n, desc->zonal, open, whole, sky);
-        vec3_add_scaled(sum, sky, 1.0f);
     }
 }
 

@@ -17,8 +17,7 @@ typedef struct parian_irradiance_desc {
     const parian_placement *at;
     const float (*origin)[3]; /* [texel_count] where rays start, in the body's coordinates */
     float eta;
-    const float *zonal; /* [3] of the transmitted cosine lobe */
-    float share;        /* of this set in the mean; 1: the first one */
+    float share; /* of this set in the mean; 1: the first one */
 } parian_irradiance_desc;
 
 /* E of every texel, [texel_count]; with a share below 1 the mean with what is there. Threads: uses

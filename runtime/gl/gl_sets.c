@@ -108,7 +108,6 @@ static void light_body(parian_renderer *renderer, uint32_t index, const gl_textu
     const uint32_t bodies = renderer->scene->data.body_count, b = index % bodies;
     const parian_placement *at = &renderer->instances[index / bodies];
     const gl_body *body = &state->body[b];
-    bool smooth = share >= 1.0f && renderer->lights.sky_count > 0;
     gl_pass_begin(device, GL_PROGRAM_IRRADIANCE, &target, 1);
     gl_pass_texture(device, "u_light", samples);
     gl_pass_texture(device, "u_image", &state->image);
@@ -122,13 +121,10 @@ static void light_body(parian_renderer *renderer, uint32_t index, const gl_textu
     gl_pass_int(device, "u_caster_count", (int)renderer->caster_count);
     gl_pass_int(device, "u_own_first", (int)(index - b));
     gl_pass_int(device, "u_own_count", (int)bodies);
-    gl_pass_int(device, "u_environment", smooth ? 1 : 0);
-    gl_pass_vec3(device, "u_sh", PARIAN_SH_COUNT, &renderer->lights.environment_sh[0][0]);
     gl_pass_mat4(device, "u_model", at->model);
     gl_pass_float(device, "u_scale", at->scale);
     gl_pass_float(device, "u_share", share);
     gl_pass_float(device, "u_eta", renderer->optics[b].eta);
-    gl_pass_vec3(device, "u_zonal", 1, renderer->optics[b].zonal_transmit);
     gl_pass_quad(device);
 }
 

@@ -9,7 +9,6 @@ uniform mat4 u_model;         // of the instance: rotation times scale, translat
 uniform float u_scale;
 uniform float u_share;        // of this set in the new mean; 1: the first
 uniform float u_eta;
-uniform vec3 u_zonal;
 layout(location = 0) out vec4 o_irradiance;
 
 // Is light i hidden from where a ray starts? own, origin: that in the body's coordinates and in the world's;
@@ -29,7 +28,7 @@ void main()
     vec3 own = texelFetch(u_origin, at, 0).xyz;
     vec3 p = (u_model * vec4(place.xyz, 1.0)).xyz, origin = (u_model * vec4(own, 1.0)).xyz;
     vec3 n = mat3(u_model) * texelFetch(u_normal, at, 0).xyz / u_scale;
-    vec3 sum = vec3(0.0), open = vec3(0.0), whole = vec3(0.0);
+    vec3 sum = vec3(0.0);
     float extent = sqrt(place.w) * u_scale;
     o_irradiance = vec4(0.0);
     if (dot(n, n) < 0.5) {
@@ -42,17 +41,9 @@ void main()
         if (cosine <= 0.0 || light.r + light.g + light.b <= 0.0) {
             continue;
         }
-        light *= cosine * fresnel_transmit(cosine, u_eta);
-        vec3 seen = is_hidden(i, own, origin, to_light) ? vec3(0.0) : light;
-        if (light_kind(i) == KIND_PROBE) {
-            whole += light;
-            open += seen;
-        } else {
-            sum += seen;
+        if (!is_hidden(i, own, origin, to_light)) {
+            sum += light * (cosine * fresnel_transmit(cosine, u_eta));
         }
-    }
-    if (u_environment != 0) {
-        sum += evaluate_sh(n, u_zonal) * open_share(open, whole);
     }
     if (u_share < 1.0) {
         sum = mix(texelFetch(u_base, at, 0).rgb, sum, u_share);

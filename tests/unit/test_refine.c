@@ -206,7 +206,7 @@ static void test_sky(void **state)
     const parian_light light = {.type = PARIAN_LIGHT_ENVIRONMENT,
                                 .color = {1, 1, 1},
                                 .image = {SKY_WIDTH, SKY_HEIGHT, (const float(*)[3])pixel}};
-    converge(&light, 0.06, 0.02);
+    converge(&light, 0.03, 0.02);
     (void)state;
 }
 
