@@ -10,7 +10,6 @@
 typedef struct parian_body_optics {
     float eta;
     float exit_norm;         /* C = 1 - 2 C1(eta), so that F_t / (pi C) integrates to one */
-    float zonal_transmit[3]; /* 2 pi int P_l(mu) mu F_t(mu) dmu: unshadowed E of an environment */
     float tint[3];           /* of what scatters out, 1 unless edited */
     float albedo[3];         /* total diffuse reflectance of a half-space of the medium */
 } parian_body_optics;
