@@ -28,7 +28,7 @@ static void copy_surface(const parian_placement *at, const parian_body *body,
         placement_point(at, body->texel_position[t], arrays->position[first + t]);
     }
     for (size_t t = 0; arrays->normal && t < body->texel_count; t++) {
-        placement_normal(at, body->texel_normal[t], arrays->normal[first + t]);
+        placement_normal(at, parian_body_lit_normal(body, t), arrays->normal[first + t]);
     }
     for (size_t t = 0; arrays->area && t < body->texel_count; t++) {
         arrays->area[first + t] = at->scale * at->scale * body->texel_area[t];

@@ -131,7 +131,7 @@ static parian_result dump_pictures(const parian_env *env, const char *folder, ui
     parian_result r = PARIAN_E_NOMEM;
     if (PARIAN_NEW0(env, colour, count) && PARIAN_NEW0(env, values, count)) {
         for (uint32_t t = 0; t < b->texel_count; t++) {
-            memcpy(values[b->texel_index[t]], b->texel_normal[t], sizeof b->texel_normal[t]);
+            memcpy(values[b->texel_index[t]], parian_body_lit_normal(b, t), 3 * sizeof(float));
             values[b->texel_index[t]][3] = b->texel_area[t];
         }
         r = parian_atlas_picture(env, b, colour);
@@ -158,7 +158,7 @@ static const float *get_position(const parian_body *b)
 
 static const float *get_normal(const parian_body *b)
 {
-    return &b->texel_normal[0][0];
+    return parian_body_lit_normal(b, 0);
 }
 
 static const float *get_area(const parian_body *b)

@@ -168,6 +168,13 @@ void parian_operator_free(const parian_env *env, parian_operator *op);
 void parian_body_free(const parian_env *env, parian_body *body);
 void parian_scene_data_free(const parian_env *env, parian_scene_data *scene);
 
+/* Unit normal of a texel that light falls on: that of the source surface where the body holds it, since the
+ * transfer surface has lost its relief, else that of the transfer surface. */
+static inline const float *parian_body_lit_normal(const parian_body *body, uint32_t texel)
+{
+    return body->texel_normal_map ? body->texel_normal_map[texel] : body->texel_normal[texel];
+}
+
 /* Compute the derived arrays (texel_position, texel_normal, texel_at, texel_border, run_factor) from the
  * stored ones, replacing what is there. Errors: PARIAN_E_NOMEM. Threads: uses env->par. */
 parian_result parian_body_derive(const parian_env *env, parian_body *body);

@@ -36,7 +36,7 @@ static void irradiance_of_texel(const parian_irradiance_desc *desc, uint32_t t, 
     float p[3], n[3], origin[3];
     placement_point(desc->at, desc->body->texel_position[t], p);
     placement_point(desc->at, own, origin);
-    placement_normal(desc->at, desc->body->texel_normal[t], n);
+    placement_normal(desc->at, parian_body_lit_normal(desc->body, t), n);
     vec3_set(sum, 0.0f);
     for (uint32_t i = 0; i < desc->list->sample_count; i++) {
         const parian_light_sample *sample = &desc->sample[i];

@@ -32,8 +32,8 @@ static void copy_normals(const void *context, uint64_t first, uint64_t count, vo
     memset(atlas, 0, count * sizeof *atlas);
     for (uint32_t t = parian_find_first(body->texel_index, body->texel_count, first);
          t < body->texel_count && body->texel_index[t] < first + count; t++) {
-        memcpy(atlas[body->texel_index[t] - first], body->texel_normal[t],
-               sizeof body->texel_normal[0]);
+        memcpy(atlas[body->texel_index[t] - first], parian_body_lit_normal(body, t),
+               3 * sizeof(float));
     }
 }
 

@@ -86,6 +86,45 @@ static void test_directional(void **state)
     (void)state;
 }
 
+/* A source whose relief the transfer surface lost: E follows the source's normals where the asset
+ * holds them, and they are the normals that are handed out. Floats: 1e-5; only texels that are far
+ * from the terminator, where no facet hides another. */
+static void test_relief(void **state)
+{
+    (void)state;
+    const parian_env *env = test_env(0);
+    parian_scene *scene = lit_sphere(env, RADIUS, 20, 3);
+    parian_body *body = &scene->data.bodies[0];
+    parian_light light = {
+        .type = PARIAN_LIGHT_DIRECTIONAL, .direction = {0, 0, -1}, .color = {2, 2, 2}};
+    assert_true(PARIAN_NEW(env, body->texel_normal_map, body->texel_count));
+    for (uint32_t t = 0; t < body->texel_count; t++) {
+        float tilt = 0.3f * sinf(1000.0f * body->texel_position[t][0]),
+              *n = body->texel_normal_map[t];
+        memcpy(n, body->texel_normal[t], sizeof body->texel_normal[t]);
+        n[1] += tilt;
+        float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int c = 0; c < 3; c++) {
+            n[c] /= length;
+        }
+    }
+    parian_renderer *renderer = lit_cpu(env, scene, 1024);
+    float(*e)[3] = lit_irradiance(env, scene, renderer, &light), (*normal)[3];
+    assert_true(PARIAN_NEW(env, normal, body->texel_count));
+    parian_texel_arrays arrays = {.normal = normal};
+    assert_int_equal(parian_renderer_read_texels(renderer, &arrays), PARIAN_OK);
+    for (uint32_t t = 0; t < body->texel_count; t++) {
+        const float *n = body->texel_normal_map[t];
+        double want = directional_form(body->texel_position[t], n);
+        assert_memory_equal(normal[t], n, sizeof normal[t]);
+        assert_true(body->texel_normal[t][2] < 0.5f || fabs((double)e[t][1] - want) < 1e-5);
+    }
+    parian_free(env, normal);
+    parian_free(env, e);
+    parian_renderer_destroy(renderer);
+    parian_scene_close(scene);
+}
+
 static void test_point(void **state)
 {
     const parian_env *env = test_env(0);
@@ -477,7 +516,7 @@ int main(void)
         cmocka_unit_test(test_spot_flux),   cmocka_unit_test(test_slide_flux),
         cmocka_unit_test(test_sky),         cmocka_unit_test(test_rect),
         cmocka_unit_test(test_shadows),     cmocka_unit_test(test_hard_places),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_relief),      cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

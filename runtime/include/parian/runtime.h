@@ -255,7 +255,7 @@ parian_result parian_renderer_read_picture(parian_renderer *renderer, float (*ra
 typedef struct parian_texel_arrays {
     uint32_t instance; /* of which instance; 0: the first */
     float (*position)[3];
-    float (*normal)[3];
+    float (*normal)[3];     /* that E is taken at: of the source surface where the asset holds it */
     float *area;
     uint32_t (*place)[2];   /* column and row in the atlas of the body */
     uint32_t *chart;        /* below chart_count of the body */
