@@ -17,7 +17,7 @@ static const parian_local_form LOCAL_FORMS[LOCAL_COUNT] = {PARIAN_LOCAL_REBUILT,
 typedef struct raw_options {
     const char *output, *report, *dump, *depfile;
     double scale, threshold, threshold_absolute;
-    int unit, bssrdf, fdr, form, local, quality;
+    int unit, bssrdf, fdr, form, local, hierarchy, quality;
     uint32_t atlas, kernel, vertices, seed;
     bool md, keep_origin, force_local, force_global, no_local, no_global;
     bool atlas_given, kernel_given, vertices_given, threshold_given, absolute_given, unit_given;
@@ -96,6 +96,10 @@ static parian_result parse_table(int argc, char **argv, raw_options *raw,
         {"--threshold-absolute", NULL, PARIAN_OPTION_NUMBER, &raw->threshold_absolute, "T",
          "Drop the factors below T, as the paper does (there 1e-5).", 1e-12, 1, NULL,
          &raw->absolute_given},
+        {"--hierarchy", NULL, PARIAN_OPTION_CHOICE, &raw->hierarchy, "WHEN",
+         "Carry far light over a few coarse points instead of from each vertex to each: where that "
+         "saves factors, always, or never (auto).",
+         0, 0, "auto|on|off", NULL},
         PARIAN_FLAG_ROW("--force-local", &raw->force_local,
                         "Keep the local part whatever the plan says."),
         PARIAN_FLAG_ROW("--force-global", &raw->force_global,
@@ -161,6 +165,10 @@ static parian_result check_options(const raw_options *raw, const parian_string_l
     if (raw->threshold_given && raw->absolute_given) {
         return usage_error("--threshold and --threshold-absolute exclude each other");
     }
+    bool by_share = raw->form != PARIAN_FORM_PAPER && !raw->absolute_given && raw->threshold > 0;
+    if (raw->hierarchy == PARIAN_HIERARCHY_ON && !by_share) {
+        return usage_error("--hierarchy on takes --form parian and a --threshold above 0");
+    }
     if (raw->scale_given && raw->unit_given) {
         return usage_error("--scale and --unit exclude each other");
     }
@@ -215,6 +223,7 @@ static void fill_desc(const raw_options *raw, const char *input, parian_bake_opt
     /* The stage takes 0 for its default; a threshold of exactly 0 means nothing is dropped. */
     d->threshold = raw->threshold > 0 ? raw->threshold : -1;
     d->threshold_absolute = raw->threshold_absolute;
+    d->hierarchy = (parian_hierarchy)raw->hierarchy;
     d->force_local = raw->force_local;
     d->force_global = raw->force_global;
     d->no_local = raw->no_local;

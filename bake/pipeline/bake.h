@@ -28,6 +28,7 @@ typedef struct parian_bake_desc {
     parian_local_form local_form;
     double threshold;
     double threshold_absolute; /* 0: by share */
+    parian_hierarchy hierarchy;
     bool force_local, force_global, no_local, no_global;
     const char *dump_folder;  /* NULL: none */
     const char *report_path;  /* NULL: none */

@@ -158,8 +158,13 @@ static parian_result step_detail(const parian_env *env, body_job *job)
 static parian_result step_global(const parian_env *env, body_job *job)
 {
     parian_global_desc desc = {.threshold = job->desc->threshold,
-                               .threshold_absolute = job->desc->threshold_absolute};
-    return parian_stage_global(env, &desc, job->body, &job->report->global);
+                               .threshold_absolute = job->desc->threshold_absolute,
+                               .hierarchy = job->desc->hierarchy};
+    parian_result r = parian_stage_global(env, &desc, job->body, &job->report->global);
+    if (r == PARIAN_OK && job->body->has_global) {
+        parian_log(env, PARIAN_LOG_INFO, "global: %s", job->report->global.hierarchy);
+    }
+    return r;
 }
 
 static parian_result step_blend(const parian_env *env, body_job *job)

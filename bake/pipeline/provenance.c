@@ -15,6 +15,8 @@
 
 static const char *const LOCAL_FORM_NAMES[] = {"none", "rebuilt", "f16", "u8", "split", "only"};
 
+static const char *const HIERARCHY_NAMES[] = {"auto", "on", "off"};
+
 static void add_settings(cJSON *object, const parian_bake_desc *desc)
 {
     cJSON *materials = cJSON_AddArrayToObject(object, "material");
@@ -35,6 +37,7 @@ static void add_settings(cJSON *object, const parian_bake_desc *desc)
     cJSON_AddNumberToObject(object, "transfer_vertices", desc->transfer_vertices);
     cJSON_AddNumberToObject(object, "threshold", desc->threshold > 0 ? desc->threshold : 0);
     cJSON_AddNumberToObject(object, "threshold_absolute", desc->threshold_absolute);
+    cJSON_AddStringToObject(object, "hierarchy", HIERARCHY_NAMES[desc->hierarchy]);
     cJSON_AddBoolToObject(object, "force_local", desc->force_local);
     cJSON_AddBoolToObject(object, "force_global", desc->force_global);
     cJSON_AddBoolToObject(object, "no_local", desc->no_local);

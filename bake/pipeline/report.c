@@ -123,6 +123,11 @@ static void add_transport(cJSON *parent, const parian_body_report *b)
     cJSON *o = cJSON_AddObjectToObject(parent, "global");
     cJSON_AddNumberToObject(o, "factors_per_channel", (double)b->global.factor_count);
     cJSON_AddNumberToObject(o, "kept_share", b->global.kept_share);
+    cJSON_AddStringToObject(o, "hierarchy", b->global.hierarchy);
+    cJSON *levels = cJSON_AddArrayToObject(o, "level_points");
+    for (uint32_t l = 0; l < b->global.level_count; l++) {
+        cJSON_AddItemToArray(levels, cJSON_CreateNumber(b->global.level_points[l]));
+    }
     cJSON_AddNumberToObject(o, "lost_mean", b->global.lost_mean);
     cJSON_AddNumberToObject(o, "lost_max", b->global.lost_max);
     add_triple(o, "row_sum_min", b->global.row_sum_min);

@@ -1,4 +1,4 @@
-/* global_rows.c - one row of throughput factors: chosen from, coded.
+/* global_rows.c - one row of throughput factors: computed, chosen from, coded.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -18,6 +18,7 @@ enum { GAP_MAX = 8, RUN_STEP = 8, BISECTIONS = 14 };
 parian_result parian_row_maker_make(const parian_env *env, const parian_global_desc *desc,
                                     const parian_body *body, parian_row_maker *maker)
 {
+    memset(maker, 0, sizeof *maker);
     maker->threshold = desc && desc->threshold != 0 ? desc->threshold : 0.002;
     maker->threshold_absolute = desc ? desc->threshold_absolute : 0;
     if (body->paper_form && maker->threshold_absolute <= 0) {
@@ -46,7 +47,7 @@ parian_result parian_row_work_make(const parian_env *env, const parian_row_maker
     for (int c = 0; c < 3; c++) {
         work->weighted[c] = work->base + (size_t)c * padded;
     }
-    return PARIAN_OK;
+    return maker->far ? parian_far_work_make(env, maker->far, &work->far) : PARIAN_OK;
 }
 
 void parian_row_work_free(const parian_env *env, parian_row_work *work)
@@ -55,6 +56,7 @@ void parian_row_work_free(const parian_env *env, parian_row_work *work)
     parian_free(env, work->base);
     parian_free(env, work->keep);
     parian_free(env, work->coded);
+    parian_far_work_free(env, &work->far);
     memset(work, 0, sizeof *work);
 }
 
@@ -64,6 +66,39 @@ void parian_run_list_free(const parian_env *env, parian_run_list *list)
     memset(list, 0, sizeof *list);
 }
 
+/* Leave to finer points what is theirs. */
+static void clear_finer(const parian_row_maker *maker, uint32_t v, const parian_row *row)
+{
+    uint32_t count = maker->factors.frame.points.count;
+    for (uint32_t u = 0; u < count; u++) {
+        if (parian_bits_get(maker->finer, (size_t)v * count + u)) {
+            row->value[0][u] = row->value[1][u] = row->value[2][u] = 0;
+        }
+    }
+}
+
+void parian_row_compute(const parian_row_maker *maker, uint32_t v, parian_row_work *work)
+{
+    const parian_vertex_frame *frame = &maker->factors.frame;
+    const parian_row *row = &work->row;
+    parian_factor_row(&maker->factors, v, row);
+    for (int c = 0; c < 3; c++) {
+        work->whole[c] = parian_row_dot(frame->area, row->value[c], frame->points.padded);
+    }
+    if (maker->finer) {
+        clear_finer(maker, v, row);
+    }
+    if (maker->far) {
+        parian_far_subtract(maker->far, v, &work->far, row->value);
+    }
+}
+
+static inline __attribute__((always_inline)) void take_magnitude(parian_lanes *v)
+{
+    *v = (parian_lanes)((parian_lane_mask)*v & 0x7fffffff);
+}
+
+/* weighted = |value area|; their largest. */
 PARIAN_CLONES
 static float weigh_row(const float *value, const float *area, uint32_t padded, float *weighted)
 {
@@ -72,6 +107,7 @@ static float weigh_row(const float *value, const float *area, uint32_t padded, f
         PARIAN_LANES_LOAD(v, value + i);
         PARIAN_LANES_LOAD(a, area + i);
         v *= a;
+        take_magnitude(&v);
         memcpy(weighted + i, &v, sizeof v);
         parian_lane_mask more = v > most;
         most = (parian_lanes)(((parian_lane_mask)v & more) | ((parian_lane_mask)most & ~more));
@@ -155,17 +191,22 @@ static void round_runs(uint8_t *keep, uint32_t count)
     }
 }
 
-PARIAN_CLONES
-static float sum_unkept(const float *weighted, const uint8_t *keep, uint32_t padded)
+/* Sum over what is not kept of value, or of weight times value. */
+static inline __attribute__((always_inline)) float
+add_unkept(const float *weight, const float *value, const uint8_t *keep, uint32_t padded)
 {
-    parian_lanes w, lane = {0};
+    parian_lanes w, v, lane = {0};
     parian_lane_bytes bytes;
     float sum = 0;
     for (uint32_t i = 0; i < padded; i += 16) {
-        PARIAN_LANES_LOAD(w, weighted + i);
+        PARIAN_LANES_LOAD(v, value + i);
+        if (weight) {
+            PARIAN_LANES_LOAD(w, weight + i);
+            v *= w;
+        }
         memcpy(&bytes, keep + i, sizeof bytes);
         parian_lane_mask kept = __builtin_convertvector(bytes, parian_lane_mask);
-        lane += PARIAN_LANES_WHERE(kept == 0, w);
+        lane += PARIAN_LANES_WHERE(kept == 0, v);
     }
     for (int k = 0; k < 16; k++) {
         sum += lane[k];
@@ -173,7 +214,20 @@ static float sum_unkept(const float *weighted, const uint8_t *keep, uint32_t pad
     return sum;
 }
 
-void parian_row_choose(const parian_row_maker *maker, parian_row_work *work,
+PARIAN_CLONES
+static float sum_unkept(const float *value, const uint8_t *keep, uint32_t padded)
+{
+    return add_unkept(NULL, value, keep, padded);
+}
+
+PARIAN_CLONES
+static float sum_weighted_unkept(const float *weight, const float *value, const uint8_t *keep,
+                                 uint32_t padded)
+{
+    return add_unkept(weight, value, keep, padded);
+}
+
+void parian_row_choose(const parian_row_maker *maker, uint32_t v, parian_row_work *work,
                        parian_row_choice *choice)
 {
     uint32_t padded = maker->factors.frame.points.padded, count = maker->factors.frame.points.count;
@@ -181,23 +235,30 @@ void parian_row_choose(const parian_row_maker *maker, parian_row_work *work,
     for (int c = 0; c < 3; c++) {
         float most =
             weigh_row(work->row.value[c], maker->factors.frame.area, padded, work->weighted[c]);
-        double sum = parian_row_dot(maker->factors.frame.area, work->row.value[c], padded);
+        double allowed = maker->threshold * work->whole[c];
         if (maker->threshold_absolute > 0) {
             bound[c] = (float)maker->threshold_absolute;
         } else if (maker->threshold > 0 && most > 0) {
-            bound[c] = find_bound(work->weighted[c], padded, most, (float)(maker->threshold * sum));
+            bound[c] = find_bound(work->weighted[c], padded, most, (float)allowed);
         } else {
             bound[c] = 0;
         }
-        choice->sum[c] = sum;
-        choice->scale[c] = parian_factor_scale(work->row.value[c], padded);
     }
     mark_kept(work->weighted, bound, padded, work->keep);
+    bool mend = maker->far && maker->factors.total && maker->factors.frame.area[v] > 0;
+    work->keep[v] |= mend;
     round_runs(work->keep, count);
     for (int c = 0; c < 3; c++) {
         double lost = sum_unkept(work->weighted[c], work->keep, padded);
-        choice->lost[c] = choice->sum[c] > 0 ? lost / choice->sum[c] : 0;
-        choice->sum[c] -= lost;
+        double dropped =
+            sum_weighted_unkept(maker->factors.frame.area, work->row.value[c], work->keep, padded);
+        choice->lost[c] = work->whole[c] > 0 ? lost / work->whole[c] : 0;
+        if (mend) {
+            float *own = &work->row.value[c][v];
+            *own = (float)fmax(0, *own + dropped / maker->factors.frame.area[v]);
+        }
+        choice->sum[c] = work->whole[c] - (mend ? 0 : dropped);
+        choice->scale[c] = parian_factor_scale(work->row.value[c], padded);
     }
 }
 

@@ -31,20 +31,32 @@ typedef struct parian_plan {
 parian_result parian_stage_plan(const parian_env *env, const parian_plan_desc *desc,
                                 parian_body *body, parian_plan *plan);
 
+/* Whether far pairs go over coarse points. */
+typedef enum parian_hierarchy {
+    PARIAN_HIERARCHY_AUTO = 0, /* where that saves factors */
+    PARIAN_HIERARCHY_ON = 1,   /* one coarse level at least */
+    PARIAN_HIERARCHY_OFF = 2
+} parian_hierarchy;
+
 typedef struct parian_global_desc {
     double threshold; /* share of a row that may be dropped; 0 takes 0.002; negative: nothing */
-    double threshold_absolute; /* > 0: drop factors (dimensionless, F times A/3) below it, as the
-                                  paper */
+    double threshold_absolute;  /* > 0: drop factors (dimensionless, F times A/3) below it, as the
+                                   paper */
+    parian_hierarchy hierarchy; /* the paper's form, and any threshold but by share, has none */
 } parian_global_desc;
 
 typedef struct parian_global_report {
-    uint64_t factor_count;      /* stored, per channel */
+    uint64_t factor_count;      /* stored, per channel, in all operators */
     double kept_share;          /* of vertex_count^2 */
-    double lost_mean, lost_max; /* share of a row's sum that was dropped, over rows and channels */
+    double lost_mean, lost_max; /* share of a vertex's row that was dropped, over rows and channels;
+                                 * with coarse levels, of what they leave, in absolute values */
+    uint32_t level_count, level_points[4]; /* coarse levels */
+    char hierarchy[160];                   /* why there are so many, in words */
     double row_sum_min[3], row_sum_max[3];
 } parian_global_report;
 
-/* Fill operators[0]. Does nothing when the plan needs no global part. */
+/* Fill the operators: [0] from flux to radiosity at the vertices and, with coarse levels, registers
+ * 2 and up, those that carry far pairs. Does nothing when the plan needs no global part. */
 parian_result parian_stage_global(const parian_env *env, const parian_global_desc *desc,
                                   parian_body *body, parian_global_report *report);
 

@@ -292,7 +292,8 @@ static parian_result prepare(blend_job *job)
                 beta[k] * body->texel_area[i];
         }
     }
-    result = parian_operator_column_sums(job->env, &body->operators[0], job->hat_area, job->column);
+    result = parian_operators_column_sums(job->env, body->operators, body->operator_count,
+                                          job->hat_area, job->column);
     if (result == PARIAN_OK) {
         result = parian_vertex_frame_make(job->env, body, &frame);
     }

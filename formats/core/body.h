@@ -122,7 +122,9 @@ typedef struct parian_body {
     /* Global part. */
     bool has_global;
     uint32_t operator_count;
-    parian_operator operators[PARIAN_MAX_OPERATORS]; /* applied in this order */
+    /* Applied in this order. The first leads from flux to radiosity at the vertices, and is complete
+     * where windows and rings look; others may carry far pairs over coarse points. */
+    parian_operator operators[PARIAN_MAX_OPERATORS];
 
     /* Blending: weights by which E of a texel adds to B of its triangle's three vertices. Absent (NULL)
      * with local_form NONE, SPLIT and ONLY. */

@@ -18,9 +18,9 @@ enum { SCALED_EXPONENT = 13 };
 /* Squared distances over 8 (bias_v + bias_u), which is the squared edge of an equilateral mesh. */
 static const float PREFILTER_FROM = 1.5f, PREFILTER_FULL = 2.4f, PREFILTER_TO = 144;
 
-static parian_result make_caps(const parian_env *env, parian_factor_maker *maker)
+parian_result parian_factor_cap(const parian_env *env, parian_factor_maker *maker)
 {
-    uint32_t count = maker->body->vertex_count;
+    uint32_t count = maker->frame.points.count;
     if (!PARIAN_NEW(env, maker->cap, count)) {
         return parian_fail(env, PARIAN_E_NOMEM, "no memory for the caps of %u vertices", count);
     }
@@ -42,13 +42,14 @@ parian_result parian_factor_maker_make(const parian_env *env, const parian_body 
     bool diagonal = split || body->local_form == PARIAN_LOCAL_NONE;
     memset(maker, 0, sizeof *maker);
     maker->body = body;
+    maker->position = (const float(*)[3])body->vertex_position;
     parian_result result = parian_transport_model_make(
         env, body, split ? PARIAN_MODEL_FAR : PARIAN_MODEL_FULL, &maker->model);
     if (result == PARIAN_OK) {
         result = parian_vertex_frame_make(env, body, &maker->frame);
     }
     if (result == PARIAN_OK && !body->paper_form) {
-        result = make_caps(env, maker);
+        result = parian_factor_cap(env, maker);
     }
     if (result == PARIAN_OK && diagonal && !body->paper_form) {
         if (!PARIAN_NEW(env, maker->total, body->vertex_count)) {
@@ -66,6 +67,7 @@ void parian_factor_maker_free(const parian_env *env, parian_factor_maker *maker)
     parian_vertex_frame_free(env, &maker->frame);
     parian_free(env, maker->total);
     parian_free(env, maker->cap);
+    parian_free(env, maker->own_position);
     memset(maker, 0, sizeof *maker);
 }
 
@@ -125,7 +127,7 @@ static void prefilter_one(const parian_factor_maker *maker, uint32_t v, uint32_t
         return;
     }
     double d[3];
-    parian_sub3(maker->body->vertex_position[u], maker->body->vertex_position[v], d);
+    parian_sub3(maker->position[u], maker->position[v], d);
     float off_v = normal_share(d, nv, r2), off_u = normal_share(d, nu, r2);
     parian_radial_eval(&maker->model.value, r2, plain);
     parian_radial_eval(&maker->model.laplacian, r2, laplacian);
@@ -165,8 +167,8 @@ static void prefilter_row(const parian_factor_maker *maker, uint32_t v, const pa
 void parian_factor_row(const parian_factor_maker *maker, uint32_t v, const parian_row *row)
 {
     const parian_point_arrays *points = &maker->frame.points;
-    parian_transport_model_row(&maker->model, maker->body->vertex_position[v],
-                               maker->frame.normal[v], false, points, row->r2, row->value);
+    parian_transport_model_row(&maker->model, maker->position[v], maker->frame.normal[v], false,
+                               points, row->r2, row->value);
     if (maker->cap) {
         prefilter_row(maker, v, row);
     }
@@ -190,6 +192,7 @@ static float largest(const float *value, uint32_t padded)
     parian_lanes v, most = {0};
     for (uint32_t i = 0; i < padded; i += 16) {
         PARIAN_LANES_LOAD(v, value + i);
+        v = (parian_lanes)((parian_lane_mask)v & 0x7fffffff);
         parian_lane_mask more = v > most;
         most = (parian_lanes)(((parian_lane_mask)v & more) | ((parian_lane_mask)most & ~more));
     }
@@ -218,10 +221,11 @@ float parian_factor_scale(const float *value, uint32_t padded)
 }
 
 /* What would be a subnormal half is 2^-28 of the row's largest factor: zero. */
-static float scale_factor(float value, float inverse)
+static inline float scale_factor(float value, float inverse)
 {
     float scaled = value * inverse;
-    return scaled < PARIAN_HALF_MIN_NORMAL ? 0.0f : scaled;
+    scaled = scaled < 0 ? scaled * (1 - 0x1p-11f) : scaled;
+    return fabsf(scaled) < PARIAN_HALF_MIN_NORMAL ? 0.0f : scaled;
 }
 
 PARIAN_CLONES
@@ -236,16 +240,19 @@ static void interleave(const float *restrict r, const float *restrict g, const f
     }
 }
 
+void parian_factor_code_run(const parian_row *row, const float scale[3], uint32_t first,
+                            uint32_t count, float (*coded)[3], parian_half (*factor)[3])
+{
+    const float inverse[3] = {1 / scale[0], 1 / scale[1], 1 / scale[2]};
+    interleave(row->value[0] + first, row->value[1] + first, row->value[2] + first, inverse, count,
+               coded);
+    parian_half_from_float_array(coded[0], factor[0], 3 * (size_t)count);
+}
+
 void parian_factor_code(const parian_row *row, float (*coded)[3], parian_operator *op, uint32_t v)
 {
-    float inverse[3];
-    for (int c = 0; c < 3; c++) {
-        inverse[c] = 1 / op->scale[v][c];
-    }
     for (uint32_t r = op->run_offset[v]; r < op->run_offset[v + 1]; r++) {
-        uint32_t column = op->run_column[r], count = op->run_count[r];
-        interleave(row->value[0] + column, row->value[1] + column, row->value[2] + column, inverse,
-                   count, coded);
-        parian_half_from_float_array(coded[0], op->factor[op->run_factor[r]], 3 * (size_t)count);
+        parian_factor_code_run(row, op->scale[v], op->run_column[r], op->run_count[r], coded,
+                               op->factor + op->run_factor[r]);
     }
 }

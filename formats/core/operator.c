@@ -154,8 +154,8 @@ void parian_operator_apply(const parian_env *env, const parian_operator *op, con
 
 typedef struct column_job {
     const parian_operator *op;
-    const float *weight;
-    double (*partial)[3]; /* [COLUMN_SUM_BLOCKS][column_count] */
+    const double (*weight)[3]; /* [row_count] */
+    double (*partial)[3];      /* [COLUMN_SUM_BLOCKS][column_count] */
 } column_job;
 
 PARIAN_CLONES
@@ -180,7 +180,7 @@ static void column_block(void *context, size_t block)
     for (uint32_t row = first; row < last; row++) {
         float gain[3];
         for (int c = 0; c < 3; c++) {
-            gain[c] = job->weight[row] * op->scale[row][c];
+            gain[c] = (float)job->weight[row][c] * op->scale[row][c];
         }
         for (uint32_t r = op->run_offset[row]; r < op->run_offset[row + 1]; r++) {
             add_run(op->factor[op->run_factor[r]], op->run_count[r], gain,
@@ -189,8 +189,9 @@ static void column_block(void *context, size_t block)
     }
 }
 
-parian_result parian_operator_column_sums(const parian_env *env, const parian_operator *op,
-                                          const float *weight, double (*sum)[3])
+/* sum += op transposed times weight. */
+static parian_result add_column_sums(const parian_env *env, const parian_operator *op,
+                                     const double (*weight)[3], double (*sum)[3])
 {
     column_job job = {.op = op, .weight = weight};
     if (!PARIAN_NEW0(env, job.partial, (size_t)op->column_count * COLUMN_SUM_BLOCKS)) {
@@ -198,12 +199,88 @@ parian_result parian_operator_column_sums(const parian_env *env, const parian_op
     }
     parian_par(env, COLUMN_SUM_BLOCKS, column_block, &job);
     for (size_t i = 0; i < (size_t)op->column_count * 3; i++) {
-        double all = 0;
         for (size_t b = 0; b < COLUMN_SUM_BLOCKS; b++) {
-            all += job.partial[b * op->column_count + i / 3][i % 3];
+            sum[i / 3][i % 3] += job.partial[b * op->column_count + i / 3][i % 3];
         }
-        sum[i / 3][i % 3] = all;
     }
     parian_free(env, job.partial);
     return PARIAN_OK;
+}
+
+/* ---- chains of operators ---- */
+
+enum { REGISTER_COUNT = 2 * PARIAN_MAX_OPERATORS };
+
+/* Zeroed registers for all that the operators name but those already given. */
+static parian_result make_registers(const parian_env *env, const parian_operator *ops,
+                                    uint32_t count, size_t element, void *given[REGISTER_COUNT],
+                                    void *made[REGISTER_COUNT])
+{
+    for (uint32_t o = 0; o < 2 * count; o++) {
+        const parian_operator *op = &ops[o / 2];
+        uint32_t index = o % 2 ? op->target_register : op->source_register;
+        uint32_t size = o % 2 ? op->row_count : op->column_count;
+        if (index >= REGISTER_COUNT) {
+            return parian_fail(env, PARIAN_E_ARGUMENT, "register %u, at most 31 are possible",
+                               index);
+        }
+        if (!given[index]) {
+            made[index] = parian_zalloc(env, size, element);
+            given[index] = made[index];
+        }
+        if (!given[index]) {
+            return parian_fail(env, PARIAN_E_NOMEM, "no memory for a register of %u numbers", size);
+        }
+    }
+    return PARIAN_OK;
+}
+
+static void free_registers(const parian_env *env, void *made[REGISTER_COUNT])
+{
+    for (int r = 0; r < REGISTER_COUNT; r++) {
+        parian_free(env, made[r]);
+    }
+}
+
+parian_result parian_operators_apply(const parian_env *env, const parian_operator *ops,
+                                     uint32_t count, const float (*flux)[3], float (*radiosity)[3])
+{
+    float *copy = NULL;
+    void *at[REGISTER_COUNT] = {0}, *made[REGISTER_COUNT] = {0};
+    uint32_t vertices = count ? ops[0].column_count : 0;
+    if (!PARIAN_NEW(env, copy, (size_t)vertices * 3)) {
+        return parian_fail(env, PARIAN_E_NOMEM, "no memory for the flux at %u vertices", vertices);
+    }
+    memcpy(copy, flux, (size_t)vertices * sizeof *flux);
+    at[0] = made[0] = copy;
+    at[1] = radiosity;
+    parian_result result = make_registers(env, ops, count, sizeof *flux, at, made);
+    for (uint32_t o = 0; o < count && result == PARIAN_OK; o++) {
+        parian_operator_apply(env, &ops[o], (const float(*)[3])at[ops[o].source_register],
+                              (float(*)[3])at[ops[o].target_register], true);
+    }
+    free_registers(env, made);
+    return result;
+}
+
+parian_result parian_operators_column_sums(const parian_env *env, const parian_operator *ops,
+                                           uint32_t count, const float *weight, double (*sum)[3])
+{
+    void *at[REGISTER_COUNT] = {0}, *made[REGISTER_COUNT] = {0};
+    uint32_t vertices = count ? ops[0].column_count : 0;
+    memset(sum, 0, (size_t)vertices * sizeof *sum);
+    at[0] = sum;
+    parian_result result = make_registers(env, ops, count, sizeof *sum, at, made);
+    for (uint32_t v = 0; v < vertices && result == PARIAN_OK; v++) {
+        for (int c = 0; c < 3; c++) {
+            ((double(*)[3])at[1])[v][c] = weight[v];
+        }
+    }
+    for (uint32_t o = count; o > 0 && result == PARIAN_OK; o--) {
+        result =
+            add_column_sums(env, &ops[o - 1], (const double(*)[3])at[ops[o - 1].target_register],
+                            (double(*)[3])at[ops[o - 1].source_register]);
+    }
+    free_registers(env, made);
+    return result;
 }

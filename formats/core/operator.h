@@ -15,9 +15,15 @@
 void parian_operator_apply(const parian_env *env, const parian_operator *op, const float (*x)[3],
                            float (*y)[3], bool accumulate);
 
-/* Sums over rows of weight[row] times the factors of each column: sum [op->column_count].
- * Errors: PARIAN_E_NOMEM. */
-parian_result parian_operator_column_sums(const parian_env *env, const parian_operator *op,
-                                          const float *weight, double (*sum)[3]);
+/* radiosity += what a body's operators, in their order, make of flux. The first operator leads from
+ * register 0 to 1 (flux, radiosity: [its columns]); the others' registers begin at zero.
+ * Errors: PARIAN_E_NOMEM, PARIAN_E_ARGUMENT (a register beyond 31). */
+parian_result parian_operators_apply(const parian_env *env, const parian_operator *ops,
+                                     uint32_t count, const float (*flux)[3], float (*radiosity)[3]);
+
+/* The transpose of that: sum[u] = sum over v of weight[v] times the radiosity that unit flux at u
+ * makes at v. sum [columns of the first operator]. Errors as above. */
+parian_result parian_operators_column_sums(const parian_env *env, const parian_operator *ops,
+                                           uint32_t count, const float *weight, double (*sum)[3]);
 
 #endif

@@ -112,11 +112,12 @@ parian_result parian_operators_check(const parian_env *env, const parian_body *b
     for (uint32_t i = 0; i < body->operator_count; i++) {
         const parian_operator *op = &body->operators[i];
         if (op->source_register == op->target_register ||
+            (i == 0 && (op->source_register != 0 || op->target_register != 1)) ||
             !claim_register(size, known, op->source_register, op->column_count) ||
             !claim_register(size, known, op->target_register, op->row_count)) {
             return fail(env, where, RULE_REGISTER,
-                        "operators lead from register to another, 0 to 31, whose sizes agree; 0 "
-                        "and 1 hold the vertices",
+                        "operators lead from a register to another, 0 to 31, whose sizes agree; 0 "
+                        "and 1 hold the vertices, and the first operator leads from 0 to 1",
                         i);
         }
         parian_result result = parian_operator_check(env, op, where);

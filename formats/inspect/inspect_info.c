@@ -102,7 +102,7 @@ static void print_transport(const parian_body *body, const body_summary *summary
     }
     print_wrapped("local part", line);
     if (body->has_global) {
-        snprintf(line, sizeof line, "%u operator%s, %s factors in %s runs (%.2f %% of all)",
+        snprintf(line, sizeof line, "%u operator%s, %s factors in %s runs (%.2f %% of all pairs)",
                  body->operator_count, body->operator_count == 1 ? "" : "s",
                  inspect_count(summary->factor_count), inspect_count(summary->run_count),
                  100 * summary->kept_share);

@@ -64,7 +64,7 @@ static uint64_t estimate_gpu_bytes(const parian_body *body, const body_summary *
 
 void inspect_summarise(const parian_body *body, body_summary *summary)
 {
-    double entries = 0;
+    double entries = (double)body->vertex_count * body->vertex_count;
     memset(summary, 0, sizeof *summary);
     for (int c = 0; c < 3; c++) {
         double sigma_t = body->medium.sigma_s_prime[c] + body->medium.sigma_a[c];
@@ -81,7 +81,6 @@ void inspect_summarise(const parian_body *body, body_summary *summary)
         const parian_operator *op = &body->operators[i];
         summary->factor_count += op->factor_total;
         summary->run_count += op->run_total;
-        entries += (double)op->row_count * op->column_count;
     }
     summary->kept_share = entries > 0 ? (double)summary->factor_count / entries : 0;
     summary->gpu_bytes = estimate_gpu_bytes(body, summary);

@@ -11,6 +11,7 @@
 #include "core/blend.h"
 #include "core/factor_row.h"
 #include "core/memory.h"
+#include "method/edited_levels.h"
 
 enum { ROWS_PER_BLOCK = 32 };
 
@@ -159,16 +160,11 @@ parian_result parian_edited_body_make(const parian_env *env, const parian_body *
                                       const parian_medium *medium, parian_edited_body *made)
 {
     parian_edited_body edited;
-    if (baked->operator_count > 1) {
-        return parian_fail(
-            env, PARIAN_E_UNSUPPORTED,
-            "the medium of body '%s' cannot be edited: its factors have coarse levels "
-            "(%u operators, expected 1); bake it with one level",
-            baked->name, baked->operator_count);
-    }
     share_body(baked, medium, &edited);
     parian_result result = PARIAN_OK;
-    if (baked->operator_count) {
+    if (baked->operator_count > 1) {
+        result = parian_edited_levels_make(env, baked, &edited);
+    } else if (baked->operator_count) {
         result = refit_operator(env, &edited);
     }
     if (result == PARIAN_OK && baked->blend_weight) {

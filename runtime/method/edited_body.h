@@ -22,8 +22,8 @@ typedef struct parian_edited_body {
 /* Make the body of a medium that parian_medium_check accepts. Factors at stored pairs are those of
  * a bake of that medium; each row is then brought to the energy of the whole one. Weights are
  * fitted anew, kernels rebuilt (forms F16 and U8 become REBUILT). Errors: PARIAN_E_NOMEM,
- * PARIAN_E_UNSUPPORTED (more than one operator), PARIAN_E_INTERRUPTED. Threads: uses env->par; the
- * same values for any number of threads. baked must outlive it. */
+ * PARIAN_E_UNSUPPORTED (operators that no bake writes), PARIAN_E_INTERRUPTED. Threads: uses
+ * env->par; the same values for any number of threads. baked must outlive it. */
 parian_result parian_edited_body_make(const parian_env *env, const parian_body *baked,
                                       const parian_medium *medium, parian_edited_body *made);
 /* The body as baked, with its kernels. */

@@ -3,7 +3,7 @@
  * Never a verdict.
  *
  *   bench_transport [marble|skimmilk] [size in mm] [rebuilt|f16|u8|split|none|paper] [icosahedron
- * cuts]
+ * cuts] [auto|off]
  *
  * SPDX-License-Identifier: MIT
  */
@@ -113,8 +113,7 @@ static void bench_filter(const parian_env *env, const parian_body *body,
 
 static void bench_product(const parian_env *env, const parian_body *body, double stream)
 {
-    const parian_operator *op = &body->operators[0];
-    double seconds[REPEATS];
+    double seconds[REPEATS], factors = 0, runs = 0;
     float(*x)[3] = calloc(body->vertex_count, sizeof *x),
     (*y)[3] = calloc(body->vertex_count, sizeof *y);
     if (!x || !y || !body->operator_count) {
@@ -125,15 +124,20 @@ static void bench_product(const parian_env *env, const parian_body *body, double
     }
     for (int k = 0; k < REPEATS; k++) {
         double start = parian_seconds();
-        parian_operator_apply(env, op, (const float(*)[3])x, y, false);
+        assert_int_equal(parian_operators_apply(env, body->operators, body->operator_count,
+                                                (const float(*)[3])x, y),
+                         PARIAN_OK);
         seconds[k] = parian_seconds() - start;
     }
-    double time = median(seconds);
-    double bytes = (double)op->factor_total * 6 + (double)op->run_total * 14;
+    for (uint32_t o = 0; o < body->operator_count; o++) {
+        factors += (double)body->operators[o].factor_total;
+        runs += body->operators[o].run_total;
+    }
+    double time = median(seconds), bytes = factors * 6 + runs * 14;
     printf("product   %8.2f ms  %6.2f M factors RGB  %5.1f factors a run  %6.2f GB/s = %.0f %% of "
            "%.2f GB/s read\n",
-           time * 1e3, (double)op->factor_total * 1e-6, (double)op->factor_total / op->run_total,
-           bytes / time * 1e-9, 100 * bytes / time / stream, stream * 1e-9);
+           time * 1e3, factors * 1e-6, factors / runs, bytes / time * 1e-9,
+           100 * bytes / time / stream, stream * 1e-9);
     free(x);
     free(y);
 }
@@ -180,6 +184,7 @@ int main(int argc, char **argv)
     }
     parian_body body;
     parian_plan plan;
+    parian_global_desc global_desc = {0};
     parian_global_report global;
     parian_blend_report blend;
     parian_kernels kernels;
@@ -192,7 +197,9 @@ int main(int argc, char **argv)
     at[0] = parian_seconds();
     assert_int_equal(parian_stage_plan(env, &desc, &body, &plan), PARIAN_OK);
     at[1] = parian_seconds();
-    assert_int_equal(parian_stage_global(env, NULL, &body, &global), PARIAN_OK);
+    global_desc.hierarchy =
+        argc > 5 && strcmp(argv[5], "off") == 0 ? PARIAN_HIERARCHY_OFF : PARIAN_HIERARCHY_AUTO;
+    assert_int_equal(parian_stage_global(env, &global_desc, &body, &global), PARIAN_OK);
     at[2] = parian_seconds();
     assert_int_equal(parian_blend_make(env, &body, &blend), PARIAN_OK);
     at[3] = parian_seconds();
@@ -207,6 +214,7 @@ int main(int argc, char **argv)
         "factors   %.2f M kept (%.1f %%), lost %.2e mean %.2e max; blend: %u fitted, %u fallback\n",
         (double)global.factor_count * 1e-6, 100 * global.kept_share, global.lost_mean,
         global.lost_max, blend.fitted, blend.fallback);
+    printf("hierarchy %s\n", global.hierarchy);
     printf("memory    %.0f MB peak\n", (double)parian_peak_memory() * 1e-6);
     double stream = read_bandwidth(env);
     bench_product(env, &body, stream);

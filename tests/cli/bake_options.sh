@@ -24,6 +24,10 @@ expect 1 parian-bake "$ply" -o "$work/a.parian" --scale 50mm --kernel 17
 expect 1 parian-bake "$ply" -o "$work/a.parian" --scale 50mm --atlas 1000000
 expect 1 parian-bake "$ply" -o "$work/a.parian" --scale 50mm --threshold nan
 expect 1 parian-bake "$ply" -o "$work/a.parian" --scale 50mm --no-local --no-global
+expect 1 parian-bake "$ply" -o "$work/a.parian" --scale 50mm --hierarchy sometimes
+expect 1 parian-bake "$ply" -o "$work/a.parian" --scale 50mm --hierarchy on --form paper
+contains "$err" "--form parian"
+expect 1 parian-bake "$ply" -o "$work/a.parian" --scale 50mm --hierarchy on --threshold 0
 expect 1 parian-bake "$ply" -o "$work/a.parian" --scale 50mm --material granite9
 contains "$err" "--list-materials"
 expect 1 parian-bake "$ply" -o "$work/a.parian" --scale 50mm --material nobody=marble

@@ -88,13 +88,13 @@ typedef struct target {
 static const target *targets(void)
 {
     static target all[TARGETS];
-    all[0] = (target){"marble", case_marble, 0.0008, 0.0009};
-    all[1] = (target){"skim milk", case_skimmilk, 0.0055, 0.0062};
-    all[2] = (target){"sigma_a x 4", scale_medium(&case_marble, 1, 4), 0.0011, 0.0011};
-    all[3] = (target){"sigma_s' x 0.5", scale_medium(&case_marble, 0.5, 1), 0.0025, 0.0027};
-    all[4] = (target){"size x 2", scale_medium(&case_marble, 2, 2), 0.0009, 0.0009};
-    all[5] = (target){"size x 0.5", scale_medium(&case_marble, 0.5, 0.5), 0.004, 0.0045};
-    all[6] = (target){"size x 0.05", scale_medium(&case_marble, 0.05, 0.05), 0.025, 0.031};
+    all[0] = (target){"marble", case_marble, 0.0009, 0.0011};
+    all[1] = (target){"skim milk", case_skimmilk, 0.0096, 0.0115};
+    all[2] = (target){"sigma_a x 4", scale_medium(&case_marble, 1, 4), 0.0014, 0.0016};
+    all[3] = (target){"sigma_s' x 0.5", scale_medium(&case_marble, 0.5, 1), 0.0052, 0.0059};
+    all[4] = (target){"size x 2", scale_medium(&case_marble, 2, 2), 0.001, 0.0014};
+    all[5] = (target){"size x 0.5", scale_medium(&case_marble, 0.5, 0.5), 0.0074, 0.0087};
+    all[6] = (target){"size x 0.05", scale_medium(&case_marble, 0.05, 0.05), 0.046, 0.055};
     return all;
 }
 

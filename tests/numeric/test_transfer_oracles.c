@@ -9,9 +9,9 @@
 
 #include "bake/stages/transport.h"
 #include "core/blend_solve.h"
-#include "core/vertex_frame.h"
 #include "core/fresnel.h"
 #include "core/near_factors.h"
+#include "core/vertex_frame.h"
 #include <stdlib.h>
 
 #include "support/transport_case.h"
@@ -36,7 +36,7 @@ static void make_sphere(parian_body *body, double radius, unsigned cuts, double 
 
 static void bake_global(parian_body *body, double threshold)
 {
-    parian_global_desc desc = {.threshold = threshold};
+    parian_global_desc desc = {.threshold = threshold, .hierarchy = PARIAN_HIERARCHY_OFF};
     assert_int_equal(parian_stage_global(test_env(0), &desc, body, NULL), PARIAN_OK);
 }
 

@@ -198,9 +198,9 @@ static inline void case_global(const parian_env *env, const parian_body *body,
                 w * body->texel_area[i] * light->e[i][k % 3];
         }
     }
-    for (uint32_t n = 0; n < body->operator_count; n++) {
-        parian_operator_apply(env, &body->operators[n], (const float(*)[3])flux, radiosity, true);
-    }
+    assert_int_equal(parian_operators_apply(env, body->operators, body->operator_count,
+                                            (const float(*)[3])flux, radiosity),
+                     PARIAN_OK);
     for (uint32_t i = 0; i < body->texel_count && body->blend_weight; i++) {
         for (int k = 0; k < 9; k++) {
             radiosity[body->triangle[body->texel_triangle[i]][k / 3]][k % 3] +=
