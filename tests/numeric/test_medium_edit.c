@@ -394,10 +394,11 @@ static void refusals(void **state)
     assert_memory_equal(b, c.b, c.texels * sizeof *b);
     memset(white.sigma_a, 0, sizeof white.sigma_a);
     const parian_medium_edit tint = {.tint = {1, 0.5f, 0.5f}};
-    c.scene->data.bodies[0].operator_count = 2; /* coarse levels: a tint alone */
+    uint32_t operators = c.scene->data.bodies[0].operator_count;
+    c.scene->data.bodies[0].operator_count = 2; /* no hierarchy: a tint alone */
     assert_int_equal(parian_renderer_set_medium(c.renderer, 0, &white, NULL), PARIAN_E_UNSUPPORTED);
     assert_int_equal(parian_renderer_set_medium(c.renderer, 0, &tint, NULL), PARIAN_OK);
-    c.scene->data.bodies[0].operator_count = 1;
+    c.scene->data.bodies[0].operator_count = operators;
     parian_medium_report report;
     assert_int_equal(parian_renderer_set_medium(c.renderer, 0, &white, &report), PARIAN_OK);
     parian_medium_edit tiny = {.size_factor = 0.02};
