@@ -152,6 +152,7 @@ void parian_renderer_destroy(parian_renderer *renderer)
         parian_renderer_free_sets(renderer);
         parian_free(env, renderer->instances);
         parian_free(env, renderer->optics);
+        parian_free(env, renderer->relief_reach);
         parian_free(env, renderer->medium);
         parian_frame_memory_trim(&renderer->frame_memory);
         parian_free(&parent, renderer);

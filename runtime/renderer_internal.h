@@ -111,6 +111,7 @@ struct parian_renderer {
     parian_settings settings;
     parian_light_list lights;
     parian_body_optics *optics;  /* [body_count] */
+    float *relief_reach;         /* [body_count] parian_relief_reach */
     parian_body_medium *medium;  /* [body_count] */
     uint32_t instance_count;     /* at least 1 */
     parian_placement *instances; /* [instance_count] */

@@ -10,6 +10,7 @@
 
 #include "core/memory.h"
 #include "cpu/transport_probe.h"
+#include "lights/relief.h"
 #include "renderer_internal.h"
 
 static const double TINT_MAX = 10, SIZE_MIN = 1e-3, SIZE_MAX_FACTOR = 1e3;
@@ -26,6 +27,7 @@ parian_result parian_renderer_start_media(parian_renderer *renderer)
 {
     const parian_scene_data *data = &renderer->scene->data;
     if (!PARIAN_NEW(&renderer->env, renderer->optics, data->body_count) ||
+        !PARIAN_NEW(&renderer->env, renderer->relief_reach, data->body_count) ||
         !PARIAN_NEW0(&renderer->env, renderer->medium, data->body_count)) {
         return parian_fail(&renderer->env, PARIAN_E_NOMEM, "no memory for %u bodies",
                            data->body_count);
@@ -33,6 +35,7 @@ parian_result parian_renderer_start_media(parian_renderer *renderer)
     for (uint32_t b = 0; b < data->body_count; b++) {
         renderer->optics[b] =
             parian_body_optics_make(&data->bodies[b].medium, data->bodies[b].fit_fdr);
+        renderer->relief_reach[b] = parian_relief_reach(&data->bodies[b]);
         renderer->medium[b].medium = data->bodies[b].medium;
         renderer->medium[b].report = AS_BAKED;
     }

@@ -319,6 +319,7 @@ static void run_irradiance(parian_renderer *renderer, const parian_light_sample 
         desc.body = &data->bodies[b];
         desc.origin = parian_renderer_origins(renderer, b, set);
         desc.eta = renderer->optics[b].eta;
+        desc.relief_reach = renderer->relief_reach[b];
         for (uint32_t i = 0; i < renderer->instance_count; i++) {
             desc.at = &renderer->instances[i];
             desc.own_first = i * data->body_count;

@@ -6,6 +6,7 @@
 
 #include "core/fresnel.h"
 #include "core/memory.h"
+#include "lights/relief.h"
 #include "vec3.h"
 
 enum { TEXEL_PIECE = 1024 };
@@ -15,11 +16,26 @@ typedef struct irradiance_job {
     float (*irradiance)[3];
 } irradiance_job;
 
-/* Is a light hidden from where a ray starts? to_light: unit direction at the texel. */
-static bool is_hidden(const parian_irradiance_desc *desc, const parian_light_sample *sample,
-                      const float own[3], const float origin[3], const float to_light[3])
+/* Where a ray of a texel starts, in the body's coordinates, when it does so some metres towards the
+ * light. */
+static void start_of_ray(const parian_irradiance_desc *desc, uint32_t t, const float to_light[3],
+                         float metres, float own[3])
 {
-    float direction[3], far = 1e30f;
+    const float *m = desc->at->model;
+    vec3_copy(own, desc->origin[t]);
+    for (int c = 0; c < 3; c++) {
+        own[c] += metres * vec3_dot(&m[4 * c], to_light) / desc->at->scale;
+    }
+}
+
+/* Is a light hidden from a texel? to_light: unit direction; cosine: of the lit normal with it. */
+static bool is_hidden(const parian_irradiance_desc *desc, const parian_light_sample *sample,
+                      uint32_t t, const float to_light[3], float cosine)
+{
+    float own[3], origin[3], direction[3], far = 1e30f;
+    float relief = parian_relief_of_texel(desc->body, t);
+    start_of_ray(desc, t, to_light, parian_relief_start(relief, cosine, desc->relief_reach), own);
+    placement_point(desc->at, own, origin);
     vec3_copy(direction, to_light);
     if (sample->kind != PARIAN_SAMPLE_DIRECTIONAL && sample->kind != PARIAN_SAMPLE_PROBE) {
         vec3_sub(direction, sample->position, origin);
@@ -31,11 +47,9 @@ static bool is_hidden(const parian_irradiance_desc *desc, const parian_light_sam
 
 static void irradiance_of_texel(const parian_irradiance_desc *desc, uint32_t t, float sum[3])
 {
-    const float *own = desc->origin[t];
     float extent = sqrtf(desc->body->texel_area[t]) * desc->at->scale;
-    float p[3], n[3], origin[3];
+    float p[3], n[3];
     placement_point(desc->at, desc->body->texel_position[t], p);
-    placement_point(desc->at, own, origin);
     placement_normal(desc->at, parian_body_lit_normal(desc->body, t), n);
     vec3_set(sum, 0.0f);
     for (uint32_t i = 0; i < desc->list->sample_count; i++) {
@@ -46,7 +60,7 @@ static void irradiance_of_texel(const parian_irradiance_desc *desc, uint32_t t, 
         if (cosine <= 0.0f || light[0] + light[1] + light[2] <= 0.0f) {
             continue;
         }
-        if (!is_hidden(desc, sample, own, origin, to_light)) {
+        if (!is_hidden(desc, sample, t, to_light, cosine)) {
             vec3_add_scaled(sum, light, cosine * parian_fresnel_transmittancef(cosine, desc->eta));
         }
     }

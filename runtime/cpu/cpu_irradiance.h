@@ -17,7 +17,8 @@ typedef struct parian_irradiance_desc {
     const parian_placement *at;
     const float (*origin)[3]; /* [texel_count] where rays start, in the body's coordinates */
     float eta;
-    float share; /* of this set in the mean; 1: the first one */
+    float relief_reach; /* parian_relief_reach of the body */
+    float share;        /* of this set in the mean; 1: the first one */
 } parian_irradiance_desc;
 
 /* E of every texel, [texel_count]; with a share below 1 the mean with what is there. Threads: uses

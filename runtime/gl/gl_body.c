@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "lights/relief.h"
 #include "method/atlas_fill.h"
 #include "method/ray_origins.h"
 
@@ -32,8 +33,9 @@ static void copy_normals(const void *context, uint64_t first, uint64_t count, vo
     memset(atlas, 0, count * sizeof *atlas);
     for (uint32_t t = parian_find_first(body->texel_index, body->texel_count, first);
          t < body->texel_count && body->texel_index[t] < first + count; t++) {
-        memcpy(atlas[body->texel_index[t] - first], parian_body_lit_normal(body, t),
-               3 * sizeof(float));
+        float *at = atlas[body->texel_index[t] - first];
+        memcpy(at, parian_body_lit_normal(body, t), 3 * sizeof(float));
+        at[3] = parian_relief_of_texel(body, t);
     }
 }
 

@@ -125,6 +125,7 @@ static void light_body(parian_renderer *renderer, uint32_t index, const gl_textu
     gl_pass_float(device, "u_scale", at->scale);
     gl_pass_float(device, "u_share", share);
     gl_pass_float(device, "u_eta", renderer->optics[b].eta);
+    gl_pass_float(device, "u_relief_reach", renderer->relief_reach[b]);
     gl_pass_quad(device);
 }
 
