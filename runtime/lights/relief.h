@@ -13,13 +13,13 @@
 
 /* Distance of the texel's two unit normals; 0 where the body holds one. */
 float parian_relief_of_texel(const parian_body *body, uint32_t texel);
-/* Root mean square edge of the transfer surface's triangles, metres: how far its facets hide what
- * they should not. */
+/* One and a half root mean square edges of the transfer surface's triangles, metres: how far its
+ * facets hide what they should not. */
 float parian_relief_reach(const parian_body *body);
 
-/* Metres that a ray to a light starts away from the surface: none while the light stands twice the
- * relief above the horizon, the whole reach when it stands less than once. cosine: of the source's
- * normal with the light. */
+/* Metres that a ray to a light starts away from the surface: none while the light stands three
+ * times the relief above the horizon, the whole reach when it stands less than twice. cosine: of
+ * the source's normal with the light. */
 static inline float parian_relief_start(float relief, float cosine, float reach)
 {
     float share = relief > 1e-4f ? 3.0f - cosine / relief : 0.0f;
