@@ -4,11 +4,18 @@
  */
 #include "cpu/cpu_occlusion.h"
 
+#include <math.h>
+
 #include "vec3.h"
 
 typedef struct shadow_ray {
-    float origin[3], direction[3], inverse[3], far;
+    float origin[3], direction[3], far;
 } shadow_ray;
+
+/* The same ray in the grid of boxes. */
+typedef struct grid_ray {
+    float start[3], inverse[3], far;
+} grid_ray;
 
 /* Source  [MoellerTrumbore97] */
 static bool meets_triangle(const float (*corner)[4], const shadow_ray *ray)
@@ -29,12 +36,25 @@ static bool meets_triangle(const float (*corner)[4], const shadow_ray *ray)
     return v >= 0.0f && u + v <= 1.0f && t > 0.0f && t < ray->far;
 }
 
-static bool meets_box(const float (*box)[4], const shadow_ray *ray)
+static grid_ray enter_grid(const float (*grid)[4], const shadow_ray *ray)
+{
+    grid_ray in = {.far = ray->far};
+    for (int c = 0; c < 3; c++) {
+        float along = ray->direction[c] * grid[1][c];
+        in.start[c] = (ray->origin[c] - grid[0][c]) * grid[1][c];
+        in.inverse[c] = 1.0f / (fabsf(along) < 1e-20f ? 1e-20f : along);
+    }
+    return in;
+}
+
+static bool meets_box(const float box[4], const grid_ray *ray)
 {
     float enter = 0.0f, leave = ray->far;
     for (int c = 0; c < 3; c++) {
-        float a = (box[0][c] - ray->origin[c]) * ray->inverse[c];
-        float b = (box[1][c] - ray->origin[c]) * ray->inverse[c];
+        float upper = (float)((uint32_t)box[c] / PARIAN_OCCLUDER_GRID);
+        float lower = box[c] - PARIAN_OCCLUDER_GRID * upper;
+        float a = (lower - ray->start[c]) * ray->inverse[c];
+        float b = (upper - ray->start[c]) * ray->inverse[c];
         float first = a < b ? a : b, last = a < b ? b : a;
         enter = first > enter ? first : enter;
         leave = last < leave ? last : leave;
@@ -45,16 +65,21 @@ static bool meets_box(const float (*box)[4], const shadow_ray *ray)
 static bool meets_caster(const parian_occluder_tree *tree, uint32_t at, uint32_t end,
                          const shadow_ray *ray)
 {
+    if (at >= end) {
+        return false;
+    }
+    const grid_ray in = enter_grid((const float(*)[4])tree->element + at, ray);
+    at += 2;
     while (at < end) {
-        const float(*box)[4] = (const float(*)[4])tree->element + at;
-        uint32_t count = (uint32_t)box[1][3];
-        bool met = meets_box(box, ray);
-        for (uint32_t k = 0; met && k < count; k++) {
-            if (meets_triangle(box + 2 + 3 * k, ray)) {
+        const float *box = tree->element[at];
+        uint32_t leaf = at + 1, after = (uint32_t)fabsf(box[3]);
+        bool met = meets_box(box, &in), leafs = box[3] < 0.0f;
+        for (; met && leafs && leaf < after; leaf += 3) {
+            if (meets_triangle((const float(*)[4])tree->element + leaf, ray)) {
                 return true;
             }
         }
-        at = !met || count > 0 ? (uint32_t)box[0][3] : at + 2;
+        at = met && !leafs ? at + 1 : after;
     }
     return false;
 }
@@ -70,8 +95,6 @@ bool parian_cpu_occluded(const parian_casters *casters, uint32_t own_first, uint
         for (int k = 0; k < 3; k++) {
             ray.origin[k] = here ? own[k] : vec3_dot(caster->row[k], origin) + caster->row[k][3];
             ray.direction[k] = vec3_dot(caster->row[k], direction);
-            float safe = fabsf(ray.direction[k]) < 1e-20f ? 1e-20f : ray.direction[k];
-            ray.inverse[k] = 1.0f / safe;
         }
         if (meets_caster(casters->tree, (uint32_t)caster->first, (uint32_t)caster->end, &ray)) {
             return true;

@@ -13,8 +13,11 @@
  * mesh makes a deep tree. */
 enum { BIN_COUNT = 16, LEAF_MAX = 4, DEPTH_MAX = 40 };
 
-/* What one step costs: a box takes two reads, a triangle three and more arithmetic. */
-static const float BOX_COST = 1.0f, TRIANGLE_COST = 1.5f;
+/* What one step costs: a box takes one read, a triangle three and more arithmetic. */
+static const float BOX_COST = 1.0f, TRIANGLE_COST = 1.2f;
+
+/* A box of boxes that is larger than this share of the one around it parts too little. */
+static const float KEPT_SHARE = 0.6f;
 
 typedef struct tree_box {
     float lower[3], upper[3];
@@ -23,9 +26,9 @@ typedef struct tree_box {
 typedef struct tree_builder {
     const float (*position)[3];
     const uint32_t (*triangle)[3];
-    tree_box *box;   /* [triangle_count] */
-    uint32_t *order; /* [triangle_count] triangles, sorted as boxes are cut */
-    float pad;       /* by which boxes are larger: rounding of the walk */
+    tree_box *box;             /* [triangle_count] */
+    uint32_t *order;           /* [triangle_count] triangles, sorted as boxes are cut */
+    float corner[3], scale[3]; /* to the grid of boxes */
     parian_occluder_tree *tree;
 } tree_builder;
 
@@ -152,7 +155,20 @@ static void write_triangle(const tree_builder *builder, uint32_t triangle)
     builder->tree->element_count += 3;
 }
 
-static void write_boxes(const tree_builder *builder, uint32_t first, uint32_t count, int depth)
+/* Steps of the grid around a box; a hundredth of a step is more than the walk rounds. */
+static void write_box(const tree_builder *builder, const tree_box *box, float to[4])
+{
+    const float last = PARIAN_OCCLUDER_GRID - 1;
+    for (int c = 0; c < 3; c++) {
+        float low = floorf((box->lower[c] - builder->corner[c]) * builder->scale[c] - 0.01f);
+        float high = ceilf((box->upper[c] - builder->corner[c]) * builder->scale[c] + 0.01f);
+        to[c] = fmaxf(low, 0.0f) + PARIAN_OCCLUDER_GRID * fminf(high, last);
+    }
+}
+
+/* around: half the surface of the box that holds these triangles. */
+static void write_boxes(const tree_builder *builder, uint32_t first, uint32_t count, int depth,
+                        float around)
 {
     tree_box box;
     uint32_t at = builder->tree->element_count;
@@ -162,13 +178,13 @@ static void write_boxes(const tree_builder *builder, uint32_t first, uint32_t co
     }
     tree_cut cut = find_cut(builder, first, count, &box);
     bool leaf = count == 1 || (count <= LEAF_MAX && cut.axis < 0);
-    float(*to)[4] = builder->tree->element + at;
-    for (int c = 0; c < 3; c++) {
-        to[0][c] = box.lower[c] - builder->pad;
-        to[1][c] = box.upper[c] + builder->pad;
+    bool kept = leaf || box_area(&box) <= KEPT_SHARE * around;
+    float *to = builder->tree->element[at];
+    if (kept) {
+        write_box(builder, &box, to);
+        around = box_area(&box);
+        builder->tree->element_count++;
     }
-    to[1][3] = leaf ? (float)count : 0.0f;
-    builder->tree->element_count += 2;
     if (leaf) {
         for (uint32_t i = first; i < first + count; i++) {
             write_triangle(builder, builder->order[i]);
@@ -177,10 +193,12 @@ static void write_boxes(const tree_builder *builder, uint32_t first, uint32_t co
         uint32_t left =
             cut.axis >= 0 && depth < DEPTH_MAX ? partition(builder, first, count, &cut) : count / 2;
         left = left > 0 && left < count ? left : count / 2;
-        write_boxes(builder, first, left, depth + 1);
-        write_boxes(builder, first + left, count - left, depth + 1);
+        write_boxes(builder, first, left, depth + 1, around);
+        write_boxes(builder, first + left, count - left, depth + 1, around);
     }
-    to[0][3] = (float)builder->tree->element_count;
+    if (kept) {
+        to[3] = (leaf ? -1.0f : 1.0f) * (float)builder->tree->element_count;
+    }
 }
 
 typedef struct caster_mesh {
@@ -205,7 +223,6 @@ static caster_mesh mesh_of(const parian_scene_data *scene, uint32_t index)
 
 static void find_boxes(tree_builder *builder, const caster_mesh *mesh)
 {
-    float reach = 0.0f;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         clear_box(&builder->box[t]);
         for (int k = 0; k < 3; k++) {
@@ -214,11 +231,29 @@ static void find_boxes(tree_builder *builder, const caster_mesh *mesh)
             vec3_copy(corner.lower, p);
             vec3_copy(corner.upper, p);
             grow_box(&builder->box[t], &corner);
-            reach = fmaxf(reach, fmaxf(fmaxf(fabsf(p[0]), fabsf(p[1])), fabsf(p[2])));
         }
         builder->order[t] = t;
     }
-    builder->pad = 1e-6f * reach;
+}
+
+/* The grid has a step to spare on each side; a flat mesh gets steps of its largest side. */
+static void write_grid(tree_builder *builder, uint32_t triangle_count)
+{
+    float(*to)[4] = builder->tree->element + builder->tree->element_count;
+    tree_box all;
+    float side[3];
+    clear_box(&all);
+    for (uint32_t t = 0; t < triangle_count; t++) {
+        grow_box(&all, &builder->box[t]);
+    }
+    vec3_sub(side, all.upper, all.lower);
+    float largest = fmaxf(fmaxf(side[0], side[1]), fmaxf(side[2], 1e-20f));
+    for (int c = 0; c < 3; c++) {
+        float step = fmaxf(side[c], 1e-3f * largest) / (PARIAN_OCCLUDER_GRID - 3);
+        builder->corner[c] = to[0][c] = all.lower[c] - step;
+        builder->scale[c] = to[1][c] = 1.0f / step;
+    }
+    builder->tree->element_count += 2;
 }
 
 static parian_result add_mesh(const parian_env *env, const caster_mesh *mesh,
@@ -232,7 +267,8 @@ static parian_result add_mesh(const parian_env *env, const caster_mesh *mesh,
                              mesh->triangle_count);
     } else if (mesh->triangle_count > 0) {
         find_boxes(&builder, mesh);
-        write_boxes(&builder, 0, mesh->triangle_count, 0);
+        write_grid(&builder, mesh->triangle_count);
+        write_boxes(&builder, 0, mesh->triangle_count, 0, INFINITY);
     }
     parian_free(env, builder.box);
     parian_free(env, builder.order);
@@ -243,7 +279,8 @@ uint64_t parian_occluder_tree_room(const parian_scene_data *scene)
 {
     uint64_t elements = 1;
     for (uint32_t m = 0; m < scene->body_count + scene->surrounding_count; m++) {
-        elements += 7 * (uint64_t)mesh_of(scene, m).triangle_count; /* a box for each, and above */
+        /* A grid, a box for each triangle, and those above. */
+        elements += 2 + 5 * (uint64_t)mesh_of(scene, m).triangle_count;
     }
     return (elements + PARIAN_OCCLUDER_ROW - 1) / PARIAN_OCCLUDER_ROW * PARIAN_OCCLUDER_ROW;
 }

@@ -1,11 +1,12 @@
 /* occluder_tree.h - everything that casts shadows, as bounding boxes in one array that shaders and
  * C walk without a stack.
  *
- * Boxes of a mesh stand in depth-first order, two
- * elements each: lower corner and the element that follows the box with all it holds; upper corner
- * and the number of triangles, 0 for a box of boxes. Triangles follow their box, three elements
- * each: corner 0 and the edges from it to corners 1 and 2. Numbers of elements are floats, exact up
- * to 2^24.
+ * A mesh begins with two elements: the corner and the scales that take its coordinates to a grid of
+ * PARIAN_OCCLUDER_GRID steps a side. Boxes follow in depth-first order, an element each: for each
+ * axis lower + PARIAN_OCCLUDER_GRID * upper in steps, then the element that follows the box with
+ * all it holds, negative for a leaf. The triangles of a leaf follow it, three elements each: corner
+ * 0 and the edges from it to corners 1 and 2. All of these are whole numbers that floats hold
+ * exactly.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -15,7 +16,11 @@
 #include "core/body.h"
 #include "placement.h"
 
-enum { PARIAN_OCCLUDER_ELEMENT_MAX = 1 << 24, PARIAN_OCCLUDER_ROW = 2048 };
+enum {
+    PARIAN_OCCLUDER_ELEMENT_MAX = 1 << 24,
+    PARIAN_OCCLUDER_ROW = 2048,
+    PARIAN_OCCLUDER_GRID = 4096
+};
 
 typedef struct parian_occluder_tree {
     uint32_t mesh_count; /* bodies, then surroundings */

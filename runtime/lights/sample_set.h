@@ -14,8 +14,8 @@ typedef enum parian_set_axis {
 } parian_set_axis;
 
 /* Point `set` of a lattice in the unit square, [0, 1)^2, with a random shift of its own for each
- * index. Points of texels and of lights are two parts of one lattice in four dimensions, so that
- * any texel meets any point of any light. Source   [Roberts18] */
+ * index. Points of texels and of lights have steps that share no ratio, so that any part of a texel
+ * meets any point of any light. Source   [Roberts18] */
 void parian_set_point(parian_set_axis axis, uint64_t index, uint32_t set, double point[2]);
 
 /* The samples of set `set` > 0, [list->sample_count]: rectangles by one random point in each of

@@ -6,6 +6,8 @@ uniform sampler2D u_caster; // rows of 4 texels: parian_caster
 uniform int u_caster_count;
 uniform int u_own_first, u_own_count;
 
+const float BOX_GRID = 4096.0;
+
 vec4 tree_element(uint i)
 {
     return texelFetch(u_tree, vector_at(i), 0);
@@ -24,27 +26,38 @@ bool meets_triangle(uint at, vec3 origin, vec3 direction, float far)
     return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < far;
 }
 
+// Boxes until the ray enters a leaf, then its triangles, and so on: neighbours that run in step wait for each other
+// at leaves alone.
 bool meets_caster(uint at, uint end, vec3 origin, vec3 direction, float far)
 {
-    vec3 safe = mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
-    vec3 inverse = 1.0 / safe;
-    while (at < end) {
-        vec4 lower = tree_element(at), upper = tree_element(at + 1u);
-        vec3 a = (lower.xyz - origin) * inverse, b = (upper.xyz - origin) * inverse;
-        vec3 first = min(a, b), last = max(a, b);
-        float enter = max(max(first.x, first.y), max(first.z, 0.0));
-        float leave = min(min(last.x, last.y), min(last.z, far));
-        uint next = at + 2u, count = uint(upper.w);
-        if (enter <= leave) {
-            for (uint k = 0u; k < count; k++) {
-                if (meets_triangle(next + 3u * k, origin, direction, far)) {
-                    return true;
-                }
-            }
-        }
-        at = enter > leave || count > 0u ? uint(lower.w) : next;
+    if (at >= end) {
+        return false;
     }
-    return false;
+    vec3 scale = tree_element(at + 1u).xyz, inverse = direction * scale;
+    vec3 start = (origin - tree_element(at).xyz) * scale;
+    inverse = 1.0 / mix(inverse, vec3(1e-20), lessThan(abs(inverse), vec3(1e-20)));
+    bool met = false;
+    at += 2u;
+    while (at < end && !met) {
+        uint leaf = 0u, leaf_end = 0u;
+        while (at < end && leaf == leaf_end) {
+            vec4 box = tree_element(at);
+            vec3 upper = floor(box.xyz * (1.0 / BOX_GRID)), lower = box.xyz - BOX_GRID * upper;
+            vec3 a = (lower - start) * inverse, b = (upper - start) * inverse;
+            vec3 first = min(a, b), last = max(a, b);
+            float enter = max(max(first.x, first.y), max(first.z, 0.0));
+            float leave = min(min(last.x, last.y), min(last.z, far));
+            uint after = uint(abs(box.w));
+            bool inside = enter <= leave, leafs = box.w < 0.0;
+            leaf = at + 1u;
+            leaf_end = inside && leafs ? after : leaf;
+            at = inside && !leafs ? leaf : after;
+        }
+        for (; leaf < leaf_end && !met; leaf += 3u) {
+            met = meets_triangle(leaf, origin, direction, far);
+        }
+    }
+    return met;
 }
 
 // direction of any length, in the world: what counts is within `far` times that. own: the origin in the coordinates
