@@ -80,6 +80,7 @@ typedef struct parian_backend_table {
     /* Add what a scene takes; and what these lights and a picture (of width 0: none) take. */
     parian_result (*count_scene)(const parian_env *env, const parian_scene_data *scene,
                                  uint32_t instance_count, parian_memory *memory);
+    void (*count_sets)(const parian_scene_data *scene, parian_memory *memory); /* of refinements */
     void (*count_frame)(const parian_light_list *list, uint32_t width, uint32_t height,
                         parian_memory *memory);
 } parian_backend_table;

@@ -181,6 +181,9 @@ parian_result parian_renderer_estimate_memory(const parian_env *env, const paria
             uint32_t copies = desc->instance_count ? desc->instance_count : 1;
             result = bare.backend->count_scene(env, &scene->data, copies, &made);
         }
+        if (result == PARIAN_OK && desc->refined) {
+            bare.backend->count_sets(&scene->data, &made);
+        }
         if (result == PARIAN_OK) {
             result = estimate_frame(&bare, desc, &made);
         }

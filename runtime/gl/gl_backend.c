@@ -449,5 +449,6 @@ const parian_backend_table parian_gl_backend = {
     .memory = gl_memory,
     .upload = gl_upload_scene,
     .count_scene = gl_count_scene,
+    .count_sets = gl_sets_count,
     .count_frame = gl_count_frame,
 };

@@ -49,6 +49,21 @@ void gl_sets_destroy(parian_renderer *renderer)
     state->scratch = NULL;
 }
 
+/* What warm_up makes. */
+void gl_sets_count(const parian_scene_data *scene, parian_memory *memory)
+{
+    uint64_t lights =
+        gl_texture_describe(GL_FORMAT_RGBA32F, PARIAN_LIGHT_ROW, PARIAN_LIGHT_MAX).size;
+    uint64_t atlases = 0;
+    for (uint32_t b = 0; b < scene->body_count; b++) {
+        uint32_t side = scene->bodies[b].atlas_size;
+        atlases += 2 * gl_texture_describe(GL_FORMAT_RGBA32F, side, side).size;
+    }
+    memory->bytes[PARIAN_MEMORY_LIGHTS] += lights;
+    memory->bytes[PARIAN_MEMORY_INSTANCES] += atlases;
+    memory->total += lights + atlases;
+}
+
 /* Textures and room of refinements; all of them are there after the first. */
 static parian_result warm_up(parian_renderer *renderer)
 {

@@ -49,6 +49,7 @@ void gl_pass_lights(const parian_renderer *renderer, float scale);
 /* gl_sets.c: where casters stand; samples of a set and starts of its rays; E of
  * all bodies of all instances. */
 void gl_casters_count(uint32_t count, parian_memory *memory);
+void gl_sets_count(const parian_scene_data *scene, parian_memory *memory);
 void gl_sets_destroy(parian_renderer *renderer);
 parian_result gl_casters_upload(parian_renderer *renderer);
 parian_result gl_set_upload(parian_renderer *renderer, uint32_t set);

@@ -220,6 +220,17 @@ parian_result parian_view_app_relight(parian_view_app *app)
     return result == PARIAN_OK ? parian_renderer_relight(app->renderer) : result;
 }
 
+parian_result parian_view_app_refine(parian_view_app *app, uint32_t sets)
+{
+    parian_result result = PARIAN_OK;
+    while (result == PARIAN_OK && parian_renderer_set_count(app->renderer) < sets) {
+        result = parian_cancelled(app->env) ? PARIAN_E_INTERRUPTED
+                                            : parian_renderer_refine(app->renderer);
+        app->error_stale = true;
+    }
+    return result;
+}
+
 parian_result parian_view_app_edit(parian_view_app *app, uint32_t body,
                                    const parian_medium_edit *edit)
 {

@@ -75,6 +75,8 @@ parian_result parian_view_app_send_lights(parian_view_app *app);
  * changed; takes seconds where the medium did. The old one stays on failure. */
 parian_result parian_view_app_send_medium(parian_view_app *app);
 /* Force a full relight, and do it. */
+/* Refine until E is the mean of so many sets of samples. */
+parian_result parian_view_app_refine(parian_view_app *app, uint32_t sets);
 parian_result parian_view_app_relight(parian_view_app *app);
 
 /* Give a body another medium, and keep what it costs in app->report; on failure nothing changes.

@@ -22,6 +22,9 @@ static parian_result render_frame(parian_view_app *app, parian_view_timings *tim
 {
     const double start = parian_seconds();
     parian_result result = parian_view_app_relight(app);
+    if (result == PARIAN_OK) {
+        result = parian_view_app_refine(app, app->options->refine);
+    }
     const double relit = parian_seconds();
     if (result == PARIAN_OK) {
         result =
@@ -98,10 +101,12 @@ static parian_result run_sequence(parian_view_app *app)
 {
     const parian_view_options *o = app->options;
     parian_view_path path;
-    if (!o->camera_path) {
-        return render_sequence(app, NULL, o->turntable ? o->turntable : 1);
+    parian_result result = parian_view_app_refine(app, o->refine);
+    if (result != PARIAN_OK || !o->camera_path) {
+        return result != PARIAN_OK ? result
+                                   : render_sequence(app, NULL, o->turntable ? o->turntable : 1);
     }
-    parian_result result = parian_view_path_read(app->env, o->camera_path, &app->camera, &path);
+    result = parian_view_path_read(app->env, o->camera_path, &app->camera, &path);
     if (result == PARIAN_OK) {
         result = render_sequence(app, &path, o->frames ? o->frames : path.frames);
         parian_view_path_free(app->env, &path);

@@ -13,7 +13,13 @@
 #include "core/memory.h"
 #include "view_sequence.h"
 
-enum { SIZE_MAX_PIXELS = 16384, WINDOW_WIDTH = 1280, FRAMES_MAX = 1000000, OPTION_MAX = 32 };
+enum {
+    SIZE_MAX_PIXELS = 16384,
+    WINDOW_WIDTH = 1280,
+    FRAMES_MAX = 1000000,
+    REFINE_MAX = 4096,
+    OPTION_MAX = 32
+};
 static const double EXPOSURE_LIMIT = 60, RADIANCE_LIMIT = 1e6, TINT_LIMIT = 10;
 
 static size_t fill_table(parian_view_options *o, parian_option table[OPTION_MAX])
@@ -89,6 +95,10 @@ static size_t fill_table(parian_view_options *o, parian_option table[OPTION_MAX]
          "Frames to render, each with a full relight (1; 11 with --timings); a window closes after "
          "them.",
          1, FRAMES_MAX, NULL, NULL},
+        {"--refine", NULL, PARIAN_OPTION_COUNT, &o->refine, "N",
+         "Light with the mean of N sets of samples: softer, more exact shadows at N times the work "
+         "(1; a window refines up to 64 by itself while nothing moves). Needs --headless or --cpu.",
+         1, REFINE_MAX, NULL, NULL},
         {"--dump", NULL, PARIAN_OPTION_STRING, &o->dump, "DIR",
          "Write per-texel arrays as .npy: position, normal, area, irradiance, radiosity and its "
          "parts.",
@@ -273,6 +283,9 @@ parian_result parian_view_options_check(const parian_env *env, parian_view_optio
     parian_result result = check_size(env, options);
     if (result == PARIAN_OK && options->timings && !options->headless) {
         result = parian_fail(env, PARIAN_E_ARGUMENT, "--timings needs --headless or --cpu");
+    }
+    if (result == PARIAN_OK && options->refine && !options->headless) {
+        result = parian_fail(env, PARIAN_E_ARGUMENT, "--refine needs --headless or --cpu");
     }
     if (result == PARIAN_OK) {
         result = check_exposure(env, options);

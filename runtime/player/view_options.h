@@ -28,9 +28,9 @@ typedef struct parian_view_options {
     size_t display_count;                                      /* at least 1 */
     const char *lights_file, *camera, *image, *dump, *timings; /* NULL when not given */
     const char *camera_path, *reference;
-    parian_string_list lights;  /* of --light */
-    uint32_t frames, turntable; /* 0 when not given */
-    double error_scale;         /* of the error view, over the mean of the reference */
+    parian_string_list lights;          /* of --light */
+    uint32_t frames, turntable, refine; /* 0 when not given */
+    double error_scale;                 /* of the error view, over the mean of the reference */
     uint32_t width, height;
     bool exposure_auto;
     double exposure_ev;

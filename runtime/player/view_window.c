@@ -20,7 +20,8 @@
 #endif
 
 enum { TITLE_MAX = 200, SETTLE_FRAMES = 3 };
-enum { COARSEST = 4, QUICK_PIXELS = 200000 };
+enum { COARSEST = 4, QUICK_PIXELS = 200000, SETS_AT_REST = 64 };
+static const double REFINE_MS = 300;              /* beyond this a window would not answer */
 static const double SMOOTH_MS = 60, REST_S = 0.2; /* of a picture while things move */
 static const double WAIT_S = 0.1, LOOK_S = 0.5, PROGRESS_WAIT_S = 0.03;
 
@@ -40,6 +41,7 @@ typedef struct view_window {
     bool moving, coarse; /* within REST_S of a change; the picture is not in full */
     double last_change;  /* seconds */
     double shade_ms;     /* of a picture in full */
+    double relight_ms;   /* of the last relight or refinement, with its picture */
     double start;        /* of the program's window, seconds */
     unsigned saved;
 #ifdef PARIAN_WITH_IMGUI
@@ -127,10 +129,12 @@ static void show_title(view_window *view)
     const parian_view_app *app = view->app;
     const char *slash = strrchr(view->asset, '/');
     const int last = (view->state.history_at + PARIAN_VIEW_HISTORY - 1) % PARIAN_VIEW_HISTORY;
-    snprintf(title, sizeof title, "%.80s - %s - %.1f ms - %s EV %+.2f - light %d of %zu - H: help",
+    snprintf(title, sizeof title,
+             "%.80s - %s - %.1f ms - %u sets - %s EV %+.2f - light %d of %zu - H: help",
              slash ? slash + 1 : view->asset, parian_view_display_names[app->display],
-             (double)view->state.frame_ms[last], app->exposure_auto ? "auto" : "manual",
-             (double)app->exposure_ev, view->state.selected + 1, app->lights.count);
+             (double)view->state.frame_ms[last], parian_renderer_set_count(app->renderer),
+             app->exposure_auto ? "auto" : "manual", (double)app->exposure_ev,
+             view->state.selected + 1, app->lights.count);
     glfwSetWindowTitle(view->glfw.window, title);
 }
 
@@ -188,6 +192,7 @@ static parian_result draw_picture(view_window *view)
         if (side == 1 && !relit && state->pictures > 0) {
             view->shade_ms = ms; /* the first picture also builds the shaders */
         }
+        view->relight_ms = relit ? ms : view->relight_ms;
         note_times(view, ms);
         show_title(view);
     }
@@ -484,6 +489,28 @@ static void refine_at_rest(view_window *view)
     }
 }
 
+/* While nothing moves, E takes in another set of samples with each picture. */
+static parian_result refine_light(view_window *view)
+{
+    const parian_view_app *app = view->app;
+    const double start = parian_seconds();
+    const bool due = !app->options->frames && view->state.pictures > 0 &&
+                     !view->state.picture_stale && !view->coarse &&
+                     start - view->last_change > REST_S && view->relight_ms < REFINE_MS &&
+                     parian_renderer_set_count(app->renderer) < SETS_AT_REST;
+    if (!due) {
+        return PARIAN_OK;
+    }
+    parian_result result =
+        parian_view_app_refine(view->app, parian_renderer_set_count(app->renderer) + 1);
+    if (result == PARIAN_OK) {
+        result = draw_picture(view);
+    }
+    view->relight_ms = result == PARIAN_OK ? 1e3 * (parian_seconds() - start) : 2 * REFINE_MS;
+    view->glfw.settle = view->glfw.settle > 0 ? view->glfw.settle : 1;
+    return is_fatal(result) ? result : PARIAN_OK;
+}
+
 /* ---- the loop ----------------------------------------------------------------------------------
  */
 static parian_result step(view_window *view)
@@ -502,6 +529,9 @@ static parian_result step(view_window *view)
     parian_view_state_lay_out(state);
     refine_at_rest(view);
     const bool seen = view->glfw.width > 0 && view->glfw.height > 0;
+    if (result == PARIAN_OK && seen) {
+        result = refine_light(view);
+    }
     if (result == PARIAN_OK && seen && (state->picture_stale || view->glfw.settle > 0)) {
         view->glfw.settle = view->glfw.settle > 0 ? view->glfw.settle - 1 : 0;
         result = draw_frame(view);

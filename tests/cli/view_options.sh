@@ -29,6 +29,10 @@ for bad in "--size 10" "--size 0x10" "--size 99999x10" "--size 10x10x" "--exposu
     expect 1 parian-view "$asset" --headless $bad
     one_line "$err"
 done
+expect 1 parian-view "$asset" --refine 4
+contains "$err" "--refine needs --headless"
+one_line "$err"
+expect 1 parian-view "$asset" --headless --refine 0
 expect 1 parian-view "$asset" --timings "$work/t.json"
 for later in texture volume:step=1 maps texture:samples=1600,local=401; do
     expect 5 parian-view "$asset" --headless --method "$later"

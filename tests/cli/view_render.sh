@@ -47,6 +47,13 @@ printf '{"lights":[{"type":"directional","direction":[0,0,-2],"irradiance":1}]}'
 expect 0 parian-view "$asset" --cpu --size 16x16 --lights "$work/lights.json" --light point:0,0,1:intensity=1 \
     --dump "$work/lit"
 
+# More sets of samples are another mean.
+printf '{"lights":[{"type":"environment","radiance":[1,1,1]}]}' > "$work/sky.json"
+for sets in 1 3; do
+    expect 0 parian-view "$asset" --cpu --size 16x16 --lights "$work/sky.json" --dump "$work/sky$sets" --refine $sets
+done
+cmp -s "$work/sky1/texel_irradiance.npy" "$work/sky3/texel_irradiance.npy" && fail "--refine changes nothing"
+
 # Timings: the passes ran once a frame.
 expect 0 parian-view "$asset" --cpu --size 16x16 --frames 3 --timings "$work/t.json"
 contains "$work/t.json" '"frames":	2'

@@ -98,7 +98,7 @@ static void test_estimate(void **state)
                                      .image = {SIDE, SIDE, (const float(*)[3])pixel}}};
     const parian_env *env = test_env(0);
     parian_renderer_desc desc = {.get_proc_address = test_egl_address, .shadow_size = 512};
-    parian_memory_desc frame = {lights, 2, 1, WIDTH, HEIGHT};
+    parian_memory_desc frame = {lights, 2, 1, WIDTH, HEIGHT, false};
     parian_draw_desc draw = view_of(WIDTH, HEIGHT);
     parian_scene *scenes[2] = {tiny_scene(env), ball_scene(env)};
     for (int s = 0; s < 2; s++) {
@@ -134,7 +134,7 @@ static void test_budget(void **state)
     const parian_env env = {.log = keep_line, .user = &log};
     parian_scene *scene = ball_scene(&env);
     parian_renderer_desc desc = {.get_proc_address = test_egl_address, .shadow_size = 1024};
-    parian_memory_desc frame = {&sun, 1, 1, WIDTH, HEIGHT};
+    parian_memory_desc frame = {&sun, 1, 1, WIDTH, HEIGHT, false};
     parian_memory wanted, shrunk, used;
     parian_renderer *renderer = NULL;
     parian_draw_desc draw = view_of(WIDTH, HEIGHT), large = view_of(4 * WIDTH, 4 * HEIGHT),
@@ -266,7 +266,7 @@ static void test_sizes(void **state)
     for (size_t i = 0; i < sizeof size / sizeof *size; i++) {
         const uint32_t width = size[i][0], height = size[i][1];
         parian_draw_desc draw = view_of(width, height);
-        parian_memory_desc frame = {&sun, 1, 1, width, height};
+        parian_memory_desc frame = {&sun, 1, 1, width, height, false};
         parian_memory expected;
         uint8_t(*srgb)[4] = calloc((size_t)width * height, sizeof *srgb);
         assert_int_equal(parian_renderer_draw(renderer, &draw), PARIAN_OK);
@@ -307,6 +307,31 @@ static void run_frame(parian_renderer *renderer, uint32_t i, bool draw)
                      PARIAN_OK);
 }
 
+/* The first refinement takes what is estimated, later ones nothing. */
+static void refine(const parian_env *env, parian_renderer *renderer, test_memory *memory)
+{
+    parian_light light = sun; /* as run_frame has it, whatever its direction */
+    parian_memory_desc frame = {&light, 1, 1, 32, 24, true};
+    parian_memory wanted, used;
+    assert_int_equal(parian_renderer_refine(renderer), PARIAN_OK);
+    assert_int_equal(
+        parian_renderer_estimate_memory(env, renderer->scene, &renderer->desc, &frame, &wanted),
+        PARIAN_OK);
+    used = parian_renderer_get_memory(renderer);
+    assert_memory_equal(&wanted, &used, sizeof used);
+    const size_t calls = memory->calls, live = memory->live;
+    const uint64_t made = fault.made, storage = fault.storage;
+    const uint32_t sets = parian_renderer_set_count(renderer);
+    for (uint32_t k = 1; k <= 8; k++) {
+        assert_int_equal(parian_renderer_refine(renderer), PARIAN_OK);
+        assert_int_equal(parian_renderer_set_count(renderer), sets + k);
+    }
+    assert_int_equal(memory->calls, calls);
+    assert_int_equal(memory->live, live);
+    assert_int_equal(fault.made, made);
+    assert_int_equal(fault.storage, storage);
+}
+
 /* Relight over and over: no memory asked for, no GL object made, nothing grows. */
 static void run_frames(parian_backend backend, uint32_t frames, double seconds)
 {
@@ -336,6 +361,7 @@ static void run_frames(parian_backend backend, uint32_t frames, double seconds)
     assert_int_equal(parian_renderer_memory(renderer), used.total);
     /* The driver keeps caches of its own: 1 MB is far less than a byte each would add up to. */
     assert_true(mallinfo2().uordblks < heap + (backend == PARIAN_BACKEND_CPU ? 4096 : 1 << 20));
+    refine(&env, renderer, &memory);
     parian_renderer_destroy(renderer);
     parian_scene_close(scene);
     assert_int_equal(memory.live, 0);

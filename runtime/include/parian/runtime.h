@@ -345,6 +345,7 @@ typedef struct parian_memory_desc { /* zero is default */
     size_t light_count;
     uint32_t instance_count; /* 0: one */
     uint32_t width, height;  /* of pictures; 0: none are drawn */
+    bool refined;            /* with what parian_renderer_refine takes in its first call */
 } parian_memory_desc;
 
 /* What a renderer with this desc would use, before it exists and without any GL; desc may be NULL. Counts the
