@@ -5,6 +5,9 @@ set -u
 need parian-view
 need parian-bake
 need picture_statistics
+# The driver of a window unloads itself before leaks are looked for, and what it kept can no longer be named. The
+# player's own leaks are looked for in its other tests.
+[ "${PARIAN_SANITIZED:-0}" = 0 ] || export ASAN_OPTIONS="${ASAN_OPTIONS:-}:detect_leaks=0"
 . "$PARIAN_SOURCE_DIR/tests/support/window_support.sh"
 
 printf 'OFF\n6 8 0\n1 0 0\n-1 0 0\n0 1 0\n0 -1 0\n0 0 1\n0 0 -1\n3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n3 2 0 5\n3 1 2 5\n3 3 1 5\n3 0 3 5\n' \
