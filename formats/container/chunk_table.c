@@ -144,6 +144,13 @@ static parian_result read_entry(const parian_file_view *file, const parian_reade
         finding = "reserved bytes of the entry are not zero";
     }
     if (rule != 0) {
+        unsigned minor = load_u16(file->data + HEADER_MINOR);
+        if ((rule == RULE_ELEMENT || rule == RULE_CODEC) && minor > PARIAN_FORMAT_VERSION_MINOR) {
+            return parian_file_fail(file, PARIAN_E_UNSUPPORTED, rule, place,
+                                    "chunk %u: %s in format %d.%u, this program knows %d.%d", index,
+                                    finding, PARIAN_FORMAT_VERSION, minor, PARIAN_FORMAT_VERSION,
+                                    PARIAN_FORMAT_VERSION_MINOR);
+        }
         return parian_file_fail(file, PARIAN_E_FORMAT, rule, place, "chunk %u: %s", index, finding);
     }
     uint64_t size_max =

@@ -57,6 +57,10 @@ uint64_t parian_table_size(uint32_t chunk_count, uint64_t block_count);
 void parian_table_encode(const parian_chunk_info *chunk, uint32_t chunk_count,
                          const parian_block_record *block, uint64_t block_count, uint8_t *bytes);
 void parian_header_encode(const uint8_t *table, uint32_t chunk_count, uint64_t block_count,
-                          uint64_t table_offset, uint8_t *header);
+                          uint64_t table_offset, uint32_t version_minor, uint8_t *header);
+
+/* The bytes and the table behind a reader, for those who copy blocks as they are. */
+const parian_file_view *parian_reader_file(const parian_reader *reader);
+const parian_chunk_table *parian_reader_table(const parian_reader *reader);
 
 #endif

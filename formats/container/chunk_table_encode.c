@@ -45,13 +45,13 @@ void parian_table_encode(const parian_chunk_info *chunk, uint32_t chunk_count,
 }
 
 void parian_header_encode(const uint8_t *table, uint32_t chunk_count, uint64_t block_count,
-                          uint64_t table_offset, uint8_t *header)
+                          uint64_t table_offset, uint32_t version_minor, uint8_t *header)
 {
     uint64_t size = parian_table_size(chunk_count, block_count);
     memset(header, 0, HEADER_SIZE);
     memcpy(header, PARIAN_MAGIC, MAGIC_SIZE);
     store_u16(header + HEADER_MAJOR, PARIAN_FORMAT_VERSION);
-    store_u16(header + HEADER_MINOR, PARIAN_FORMAT_VERSION_MINOR);
+    store_u16(header + HEADER_MINOR, (uint16_t)version_minor);
     store_u32(header + HEADER_CHUNK_COUNT, chunk_count);
     store_u64(header + HEADER_FILE_SIZE, table_offset + size);
     store_u64(header + HEADER_TABLE_OFFSET, table_offset);

@@ -54,7 +54,7 @@ enum {
     BLOCK_CHECKSUM = 8
 };
 
-#define FLAGS_RESERVED 0x0000fffeu /* must be zero; bits 16 to 31 are unused: ignored */
+#define FLAGS_RESERVED (0xffffffffu ^ PARIAN_CHUNK_REQUIRED ^ PARIAN_CHUNK_FLAGS_UNUSED)
 
 /* Rules of the container, numbered as in docs/format.md. */
 enum {

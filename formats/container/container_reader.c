@@ -121,6 +121,21 @@ uint64_t parian_reader_file_size(const parian_reader *reader)
     return reader->file.size;
 }
 
+uint32_t parian_reader_version_minor(const parian_reader *reader)
+{
+    return load_u16(reader->file.data + HEADER_MINOR);
+}
+
+const parian_file_view *parian_reader_file(const parian_reader *reader)
+{
+    return &reader->file;
+}
+
+const parian_chunk_table *parian_reader_table(const parian_reader *reader)
+{
+    return &reader->table;
+}
+
 const char *parian_reader_name(const parian_reader *reader)
 {
     return reader->name;

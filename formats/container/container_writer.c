@@ -31,7 +31,8 @@ struct parian_writer {
     parian_output output;
     int level;
     bool no_compression;
-    parian_result failed; /* the first error: nothing but abort is left */
+    uint32_t version_minor; /* the lowest that has what was written */
+    parian_result failed;   /* the first error: nothing but abort is left */
     parian_chunk_info *chunk;
     uint32_t chunk_count, chunk_capacity;
     parian_block_record *block;
@@ -49,8 +50,9 @@ parian_result parian_writer_begin(const parian_env *env, const parian_writer_des
 {
     parian_writer *made;
     if (!desc || !desc->path || desc->compression_level < 0 ||
-        desc->compression_level > LEVEL_MAX) {
-        return parian_fail(env, PARIAN_E_ARGUMENT, "a writer needs a path and a level of 0 to %d",
+        desc->compression_level > LEVEL_MAX || desc->version_minor > UINT16_MAX) {
+        return parian_fail(env, PARIAN_E_ARGUMENT,
+                           "a writer needs a path, a level of 0 to %d and a 16-bit minor version",
                            LEVEL_MAX);
     }
     if (!PARIAN_NEW0(env, made, 1)) {
@@ -61,6 +63,7 @@ parian_result parian_writer_begin(const parian_env *env, const parian_writer_des
     }
     made->level = desc->compression_level ? desc->compression_level : LEVEL_DEFAULT;
     made->no_compression = desc->no_compression;
+    made->version_minor = desc->version_minor;
     parian_result result = parian_output_open(&made->env, desc->path, &made->output);
     if (result == PARIAN_OK) {
         result = parian_output_append(&made->output, zeros, HEADER_SIZE);
@@ -271,29 +274,36 @@ static parian_result check_chunk(parian_writer *writer, parian_chunk_info *info,
     return PARIAN_OK;
 }
 
+/* Check a chunk, make room for it in the table, and go to its place in the file. */
+static parian_result begin_chunk(parian_writer *writer, parian_chunk_info *info, const void *data)
+{
+    parian_result result = check_chunk(writer, info, data);
+    if (result != PARIAN_OK) {
+        return result;
+    }
+    if (!reserve_chunk(writer) || !reserve_blocks(writer, block_count_of(info->size))) {
+        return parian_fail(&writer->env, PARIAN_E_NOMEM, "%s: no memory for the table",
+                           writer->output.path);
+    }
+    result = append_padding(writer);
+    info->offset = writer->output.size;
+    return result;
+}
+
 static parian_result append_chunk(parian_writer *writer, const parian_chunk_info *wanted,
                                   const void *data)
 {
     parian_chunk_info info = *wanted;
     size_t length = strnlen(info.name, sizeof info.name);
     memset(info.name + length, 0, sizeof info.name - length);
-    info.flags &= 0xffffu; /* the unused bits stay zero */
+    info.flags &= ~PARIAN_CHUNK_FLAGS_UNUSED;
     if (writer->no_compression) {
         info.codec = PARIAN_CODEC_RAW;
     }
-    parian_result result = check_chunk(writer, &info, data);
+    parian_result result = begin_chunk(writer, &info, data);
     if (result != PARIAN_OK) {
         return result;
     }
-    if (!reserve_chunk(writer) || !reserve_blocks(writer, block_count_of(info.size))) {
-        return parian_fail(&writer->env, PARIAN_E_NOMEM, "%s: no memory for the table",
-                           writer->output.path);
-    }
-    result = append_padding(writer);
-    if (result != PARIAN_OK) {
-        return result;
-    }
-    info.offset = writer->output.size;
     result = append_blocks(writer, &info, data);
     info.stored_size = writer->output.size - info.offset;
     writer->chunk[writer->chunk_count++] = info;
@@ -305,6 +315,50 @@ parian_result parian_writer_chunk(parian_writer *writer, const parian_chunk_info
 {
     if (writer->failed == PARIAN_OK) {
         writer->failed = append_chunk(writer, info, data);
+    }
+    return writer->failed;
+}
+
+/* ---- copies ----------------------------------------------------------------------------------
+ */
+
+static parian_result append_stored(parian_writer *writer, const parian_reader *reader,
+                                   uint32_t index)
+{
+    const parian_file_view *file = parian_reader_file(reader);
+    const parian_chunk_table *table = parian_reader_table(reader);
+    for (uint64_t b = table->first_block[index]; b < table->first_block[index + 1]; b++) {
+        parian_block_record *record = &writer->block[writer->block_count++];
+        record->stored_size = parian_block_stored_size(file, table, b);
+        record->checksum = parian_block_checksum(file, table, b);
+        parian_result result = parian_output_append(
+            &writer->output, file->data + table->block_offset[b], record->stored_size);
+        if (result != PARIAN_OK) {
+            return result;
+        }
+    }
+    return PARIAN_OK;
+}
+
+static parian_result copy_chunk(parian_writer *writer, const parian_reader *reader, uint32_t index)
+{
+    parian_result result = parian_reader_check(reader, index);
+    if (result != PARIAN_OK) {
+        return result;
+    }
+    parian_chunk_info info = *parian_reader_chunk(reader, index);
+    result = begin_chunk(writer, &info, parian_reader_file(reader)->data);
+    if (result == PARIAN_OK) {
+        result = append_stored(writer, reader, index);
+        writer->chunk[writer->chunk_count++] = info;
+    }
+    return result;
+}
+
+parian_result parian_writer_copy(parian_writer *writer, const parian_reader *reader, uint32_t index)
+{
+    if (writer->failed == PARIAN_OK) {
+        writer->failed = copy_chunk(writer, reader, index);
     }
     return writer->failed;
 }
@@ -325,7 +379,7 @@ static parian_result append_table(parian_writer *writer)
     parian_table_encode(writer->chunk, writer->chunk_count, writer->block, writer->block_count,
                         table);
     parian_header_encode(table, writer->chunk_count, writer->block_count, writer->output.size,
-                         header);
+                         writer->version_minor, header);
     if (result == PARIAN_OK) {
         result = parian_output_append(&writer->output, table, table_size);
     }

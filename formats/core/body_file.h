@@ -17,4 +17,9 @@ parian_result parian_scene_data_write(parian_writer *writer, const parian_scene_
  * Errors: PARIAN_E_FORMAT (chunk, object, rule), PARIAN_E_UNSUPPORTED, PARIAN_E_NOMEM. */
 parian_result parian_scene_data_read(const parian_env *env, const parian_reader *reader, parian_scene_data *scene);
 
+/* Whether the schema has a chunk of this name; *codec: the one that parian_scene_data_write gives it. */
+bool parian_scene_knows_chunk(const char *name, parian_codec *codec);
+/* Refuse a file with a chunk that is required and unknown. Errors: PARIAN_E_UNSUPPORTED by its name. */
+parian_result parian_scene_check_required(const parian_env *env, const parian_reader *reader);
+
 #endif

@@ -338,29 +338,57 @@ static parian_result read_surrounding(object_reader *in, parian_surrounding *sur
 /* ---- the scene ----------------------------------------------------------------------------------
  */
 
-static bool in_table(const parian_schema_array *array, const char *name)
+static bool in_table(const parian_schema_array *array, const char *name, parian_codec *codec)
 {
     for (; array->name; array++) {
         if (strcmp(array->name, name) == 0) {
+            *codec = array->codec;
             return true;
         }
     }
     return false;
 }
 
-static bool is_known(const char *name)
+static bool in_list(const char *const *list, size_t count, const char *name)
 {
-    static const char *const other[] = {
-        "scene.counts",      "scene.lights",       "scene.provenance", "body.settings",
-        "body.name",         "body.plan",          "medium.name",      "medium.source",
-        "operator.settings", "surrounding.counts", "surrounding.name"};
-    for (size_t i = 0; i < sizeof other / sizeof *other; i++) {
-        if (strcmp(other[i], name) == 0) {
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(list[i], name) == 0) {
             return true;
         }
     }
-    return in_table(parian_body_arrays, name) || in_table(parian_operator_arrays, name) ||
-           in_table(parian_surrounding_arrays, name);
+    return false;
+}
+
+bool parian_scene_knows_chunk(const char *name, parian_codec *codec)
+{
+    static const char *const counts[] = {"scene.counts", "body.settings", "operator.settings",
+                                         "surrounding.counts"};
+    static const char *const texts[] = {"scene.lights",    "scene.provenance", "body.name",
+                                        "body.plan",       "medium.name",      "medium.source",
+                                        "surrounding.name"};
+    bool count = in_list(counts, sizeof counts / sizeof *counts, name);
+    if (count || in_list(texts, sizeof texts / sizeof *texts, name)) {
+        *codec = count ? PARIAN_CODEC_RAW : PARIAN_CODEC_ZSTD;
+        return true;
+    }
+    return in_table(parian_body_arrays, name, codec) ||
+           in_table(parian_operator_arrays, name, codec) ||
+           in_table(parian_surrounding_arrays, name, codec);
+}
+
+parian_result parian_scene_check_required(const parian_env *env, const parian_reader *reader)
+{
+    for (uint32_t i = 0; i < parian_reader_chunk_count(reader); i++) {
+        const parian_chunk_info *info = parian_reader_chunk(reader, i);
+        parian_codec codec;
+        if ((info->flags & PARIAN_CHUNK_REQUIRED) &&
+            !parian_scene_knows_chunk(info->name, &codec)) {
+            return parian_fail(env, PARIAN_E_UNSUPPORTED,
+                               "%s: rule %d: chunk %s is required and unknown to this program",
+                               parian_reader_name(reader), RULE_CHUNK_UNKNOWN, info->name);
+        }
+    }
+    return PARIAN_OK;
 }
 
 /* Judge the chunks that nothing asked for. */
@@ -368,20 +396,16 @@ static parian_result check_rest(const object_reader *in)
 {
     for (uint32_t i = 0; i < parian_reader_chunk_count(in->reader); i++) {
         const parian_chunk_info *info = parian_reader_chunk(in->reader, i);
+        parian_codec codec;
         if (in->used[i]) {
             continue;
         }
-        if (is_known(info->name)) {
+        if (parian_scene_knows_chunk(info->name, &codec)) {
             return parian_fail(
                 in->env, PARIAN_E_FORMAT,
                 "%s: rule %d: chunk %s of object %u, level %u does not go with the file's settings",
                 parian_reader_name(in->reader), RULE_CHUNK_UNEXPECTED, info->name, info->object,
                 info->level);
-        }
-        if (info->flags & PARIAN_CHUNK_REQUIRED) {
-            return parian_fail(in->env, PARIAN_E_UNSUPPORTED,
-                               "%s: rule %d: chunk %s is required and unknown to this program",
-                               parian_reader_name(in->reader), RULE_CHUNK_UNKNOWN, info->name);
         }
         parian_result result = parian_reader_check(in->reader, i);
         if (result != PARIAN_OK) {
@@ -445,7 +469,10 @@ parian_result parian_scene_data_read(const parian_env *env, const parian_reader 
         return parian_fail(env, PARIAN_E_NOMEM, "%s: no memory to read it",
                            parian_reader_name(reader));
     }
-    parian_result result = read_objects(&in, &made);
+    parian_result result = parian_scene_check_required(env, reader);
+    if (result == PARIAN_OK) {
+        result = read_objects(&in, &made);
+    }
     if (result == PARIAN_OK) {
         result = check_rest(&in);
     }

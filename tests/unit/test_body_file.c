@@ -100,30 +100,6 @@ static void derived_arrays_follow_from_stored_ones(void **state)
     parian_body_free(NULL, &body);
 }
 
-static void read_golden(const char *path, float area_factor)
-{
-    parian_scene_data scene, back;
-    assert_int_equal(test_tiny_scene(NULL, PARIAN_LOCAL_F16, 5, &scene), PARIAN_OK);
-    for (uint32_t i = 0; i < scene.bodies[0].texel_count; i++) {
-        scene.bodies[0].texel_area[i] *= area_factor;
-    }
-    if (getenv("PARIAN_GOLDEN_WRITE")) {
-        assert_int_equal(save(NULL, path, &scene), PARIAN_OK);
-    }
-    assert_int_equal(load(NULL, path, &back), PARIAN_OK);
-    assert_true(test_scene_equal(&scene, &back));
-    parian_scene_data_free(NULL, &scene);
-    parian_scene_data_free(NULL, &back);
-}
-
-/* Files of the first version of the format are read as they were written. */
-static void golden_files_read_the_same(void **state)
-{
-    (void)state;
-    read_golden(test_source("tests/golden/tiny_1_0.parian"), 1);
-    read_golden(test_source("tests/golden/tiny_area_1_0.parian"), 1.0001f);
-}
-
 /* ---- every rule refuses -------------------------------------------------------------------------
  */
 
@@ -369,7 +345,6 @@ int main(void)
         cmocka_unit_test(large_arrays_come_back),
         cmocka_unit_test(empty_scene_comes_back),
         cmocka_unit_test(derived_arrays_follow_from_stored_ones),
-        cmocka_unit_test(golden_files_read_the_same),
         cmocka_unit_test(every_rule_refuses),
         cmocka_unit_test(missing_and_surplus_arrays_are_refused),
         cmocka_unit_test(unknown_chunks_are_ignored_or_refused),

@@ -58,6 +58,7 @@ typedef enum parian_codec {
 const char *parian_codec_name(parian_codec codec);
 
 enum { PARIAN_CHUNK_REQUIRED = 1u }; /* a reader that does not know the chunk must refuse the file */
+#define PARIAN_CHUNK_FLAGS_UNUSED 0xffff0000u /* a later minor version may give them a meaning */
 
 /* Description of a chunk: a typed array with a shape, of one object and level of detail. */
 typedef struct parian_chunk_info {
@@ -77,11 +78,13 @@ typedef struct parian_chunk_info {
 /* ------------------------------------------------------------------------------------------------
  * Writing. Nothing appears under the target's name before finish has succeeded. */
 typedef struct parian_writer parian_writer;
+typedef struct parian_reader parian_reader;
 
 typedef struct parian_writer_desc {
     const char *path;      /* target; the bytes go to a temporary file beside it first */
     int compression_level; /* zstd level, 1 to 19; 0 takes 1 */
     bool no_compression;   /* every chunk raw */
+    uint32_t version_minor; /* the file states at least this one; 0: the lowest that has what is written */
 } parian_writer_desc;
 
 /* Errors: PARIAN_E_ARGUMENT, PARIAN_E_IO, PARIAN_E_NOMEM. Threads: a writer belongs to one thread; blocks
@@ -94,6 +97,10 @@ parian_result parian_writer_begin(const parian_env *env, const parian_writer_des
  * from the shape), may be NULL for an empty array. (name, object, level) must be new.
  * Errors: PARIAN_E_ARGUMENT, PARIAN_E_IO, PARIAN_E_NOMEM; after an error only abort is allowed. */
 parian_result parian_writer_chunk(parian_writer *writer, const parian_chunk_info *info, const void *data);
+
+/* Append a chunk of another file as it is stored there: entry, flags of later versions and coded blocks stay byte
+ * for byte. The blocks are checked. Errors: as of parian_writer_chunk and parian_reader_read. */
+parian_result parian_writer_copy(parian_writer *writer, const parian_reader *reader, uint32_t index);
 
 /* The env that the writer was begun with, and the temporary file that it writes (to be unlinked by a handler
  * that ends the process at once). */
@@ -108,8 +115,6 @@ void parian_writer_abort(parian_writer *writer);
 
 /* ------------------------------------------------------------------------------------------------
  * Reading. Files are always validated: header and table on open, every block before its bytes are used. */
-typedef struct parian_reader parian_reader;
-
 typedef struct parian_reader_limits {
     uint64_t chunk_count_max;  /* 0 takes 65,536 */
     uint64_t decoded_size_max; /* bytes of one chunk; 0 takes 2^36; never above what the file can hold */
@@ -118,7 +123,8 @@ typedef struct parian_reader_limits {
 
 /* Map and validate the header and table of a file. limits may be NULL.
  * Errors: PARIAN_E_IO, PARIAN_E_FORMAT (log names rule and byte offset), PARIAN_E_UNSUPPORTED (newer
- * major version, unknown required chunk is judged by the schema, not here), PARIAN_E_LIMIT, PARIAN_E_NOMEM.
+ * major version; an element or codec that only a newer minor version can have; an unknown required chunk is
+ * judged by the schema, not here), PARIAN_E_LIMIT, PARIAN_E_NOMEM.
  * Threads: one thread per reader, except that the const functions may be called from many. */
 parian_result parian_reader_open(const parian_env *env, const char *path, const parian_reader_limits *limits,
                                  parian_reader **reader);
@@ -130,6 +136,7 @@ void parian_reader_close(parian_reader *reader);
 uint32_t parian_reader_chunk_count(const parian_reader *reader);
 const parian_chunk_info *parian_reader_chunk(const parian_reader *reader, uint32_t index);
 uint64_t parian_reader_file_size(const parian_reader *reader);
+uint32_t parian_reader_version_minor(const parian_reader *reader); /* that the file states; the major is ours */
 const char *parian_reader_name(const parian_reader *reader); /* the path or name it was opened with */
 /* Index of a chunk, or -1. */
 int64_t parian_reader_find(const parian_reader *reader, const char *name, uint32_t object, uint32_t level);
