@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "bake/stages/global_rounding.h"
 #include "core/half.h"
 #include "core/memory.h"
 
@@ -31,6 +32,7 @@ typedef struct rows_job {
     uint32_t block_count, first_block;
     parian_operator *op;
     bool whole_rows;
+    double area_mean_m2;
     atomic_int result;
 } rows_job;
 
@@ -83,6 +85,9 @@ static parian_result add_row(const rows_job *job, row_block *block, uint32_t i, 
     if (result == PARIAN_OK && !job->whole_rows) {
         result = reserve_factors(job->env, block, at);
     }
+    if (!job->whole_rows) {
+        parian_row_round(job->maker, job->area_mean_m2, work);
+    }
     for (uint32_t r = first_run; result == PARIAN_OK && !job->whole_rows && r < block->runs.count;
          r++) {
         const parian_run *run = &block->runs.run[r];
@@ -115,6 +120,15 @@ static void make_block(void *context, size_t index)
     }
 }
 
+/* Mark the columns of row v, whose runs are known. */
+static void mark_runs(const parian_operator *op, uint32_t v, uint8_t *keep)
+{
+    memset(keep, 0, op->column_count);
+    for (uint32_t r = op->run_offset[v]; r < op->run_offset[v + 1]; r++) {
+        memset(keep + op->run_column[r], 1, op->run_count[r]);
+    }
+}
+
 /* The second pass: compute the rows of a block again and code them where they belong. */
 static void code_block(void *context, size_t index)
 {
@@ -126,6 +140,8 @@ static void code_block(void *context, size_t index)
     for (uint32_t i = 0; result == PARIAN_OK && i < rows_of_block(job, number); i++) {
         uint32_t v = number * ROWS_PER_BLOCK + i;
         parian_row_compute(job->maker, v, &work);
+        mark_runs(op, v, work.keep);
+        parian_row_round(job->maker, job->area_mean_m2, &work);
         parian_factor_code(&work.row, work.coded, op, v);
     }
     parian_row_work_free(job->env, &work);
@@ -222,6 +238,15 @@ static void fill_report(const rows_job *job, parian_rows_report *report)
     }
 }
 
+static double mean_area(const parian_vertex_frame *frame)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < frame->points.count; i++) {
+        sum += frame->area[i];
+    }
+    return frame->points.count ? sum / frame->points.count : 0;
+}
+
 parian_result parian_rows_to_operator(const parian_env *env, const parian_row_maker *maker,
                                       double begin, double end, parian_operator *op,
                                       parian_rows_report *report)
@@ -233,6 +258,7 @@ parian_result parian_rows_to_operator(const parian_env *env, const parian_row_ma
     job.block_count = (points + ROWS_PER_BLOCK - 1) / ROWS_PER_BLOCK;
     job.whole_rows = !maker->far && !maker->finer;
     op->row_count = op->column_count = points;
+    job.area_mean_m2 = mean_area(&maker->factors.frame);
     if (!PARIAN_NEW0(env, job.block, job.block_count) ||
         !PARIAN_NEW(env, op->run_offset, (size_t)points + 1) ||
         !PARIAN_NEW0(env, op->scale, points)) {

@@ -220,11 +220,21 @@ float parian_factor_scale(const float *value, uint32_t padded)
     return choose_scale(largest(value, padded));
 }
 
+/* The number towards zero that a half can hold. */
+static inline float truncate_to_half(float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    bits &= 0xffffe000u;
+    memcpy(&value, &bits, sizeof bits);
+    return value;
+}
+
 /* What would be a subnormal half is 2^-28 of the row's largest factor: zero. */
 static inline float scale_factor(float value, float inverse)
 {
     float scaled = value * inverse;
-    scaled = scaled < 0 ? scaled * (1 - 0x1p-11f) : scaled;
+    scaled = scaled < 0 ? truncate_to_half(scaled) : scaled;
     return fabsf(scaled) < PARIAN_HALF_MIN_NORMAL ? 0.0f : scaled;
 }
 
