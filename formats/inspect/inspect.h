@@ -18,6 +18,8 @@ typedef struct inspect_options {
     const char *chunk, *output;
     double tolerance;
     bool tolerance_given;
+    uint32_t level; /* of repack: zstd's, 1 to 19 */
+    int codec;      /* of repack: a choice of --codec */
 } inspect_options;
 
 /* The commands, each on one asset (compare: two). What is asked for goes to stdout. */
@@ -27,6 +29,8 @@ parian_result inspect_chunks(const parian_env *env, const inspect_options *optio
 parian_result inspect_validate(const parian_env *env, const inspect_options *options,
                                const char *path);
 parian_result inspect_export(const parian_env *env, const inspect_options *options,
+                             const char *path);
+parian_result inspect_repack(const parian_env *env, const inspect_options *options,
                              const char *path);
 /* *different tells whether the files differ. */
 parian_result inspect_compare(const parian_env *env, const inspect_options *options,

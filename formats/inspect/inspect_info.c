@@ -190,10 +190,10 @@ static void print_scene(const char *path, const parian_reader *reader,
                         const parian_scene_data *scene)
 {
     printf("%s\n", path);
-    printf("  %-*s%s (%s bytes), format %d.%d, %u chunks\n", INDENT - 2, "file",
+    printf("  %-*s%s (%s bytes), format %d.%u, %u chunks\n", INDENT - 2, "file",
            inspect_bytes(parian_reader_file_size(reader)),
            inspect_count(parian_reader_file_size(reader)), PARIAN_FORMAT_VERSION,
-           PARIAN_FORMAT_VERSION_MINOR, parian_reader_chunk_count(reader));
+           parian_reader_version_minor(reader), parian_reader_chunk_count(reader));
     printf("  %-*s%u bod%s, %u surrounding%s, %s default lights\n", INDENT - 2, "scene",
            scene->body_count, scene->body_count == 1 ? "y" : "ies", scene->surrounding_count,
            scene->surrounding_count == 1 ? "" : "s", scene->lights_json ? "with" : "without");
@@ -321,7 +321,8 @@ static cJSON *make_scene(const char *path, const parian_reader *reader,
 {
     char version[16];
     cJSON *json = cJSON_CreateObject();
-    snprintf(version, sizeof version, "%d.%d", PARIAN_FORMAT_VERSION, PARIAN_FORMAT_VERSION_MINOR);
+    snprintf(version, sizeof version, "%d.%u", PARIAN_FORMAT_VERSION,
+             parian_reader_version_minor(reader));
     cJSON_AddStringToObject(json, "asset", path);
     cJSON_AddNumberToObject(json, "file_bytes", (double)parian_reader_file_size(reader));
     cJSON_AddStringToObject(json, "format", version);

@@ -16,37 +16,45 @@ typedef parian_result (*asset_command)(const parian_env *env, const inspect_opti
 typedef struct command_entry {
     const char *name, *brief, *tool, *usage, *summary, *epilogue;
     asset_command run; /* NULL: compare */
-    bool takes_json, takes_chunk, takes_tolerance, one_asset;
+    bool takes_json, takes_chunk, takes_tolerance, one_asset, takes_codec;
 } command_entry;
 
 static const command_entry commands[] = {
     {"info", "what an asset holds", "parian-info info", "ASSET... [--json]",
      "Prints what an asset holds: bodies with their media, the mean free path against extent and "
      "texel size, counts, bytes by part, estimated GPU memory, the plan, provenance.",
-     NULL, inspect_info, true, false, false, false},
+     NULL, inspect_info, true, false, false, false, false},
     {"chunks", "its arrays", "parian-info chunks", "ASSET... [--json]",
      "Lists the arrays of an asset: name, element, shape, codec, bytes.", NULL, inspect_chunks,
-     true, false, false, false},
+     true, false, false, false, false},
     {"validate", "whether every byte follows the rules of the format", "parian-info validate",
      "ASSET... [--json]",
      "Checks every byte of an asset against the rules of the format. A violation ends with exit "
      "status 3 and one "
      "line that says which rule, what was found and where.",
-     NULL, inspect_validate, true, false, false, false},
+     NULL, inspect_validate, true, false, false, false, false},
     {"export", "one array as .npy or .csv", "parian-info export",
      "ASSET --chunk NAME -o FILE.npy|FILE.csv", "Writes one array of an asset to a file.",
      "Example:\n  parian-info export bunny.parian --chunk body0/texel.area -o area.npy",
-     inspect_export, false, true, false, true},
+     inspect_export, false, true, false, true, false},
     {"compare", "whether two assets hold the same", "parian-info compare",
      "A B [--tolerance T] [--json]",
      "Compares two assets array by array. Exit status 7 when they differ.",
      "Indices are compared exactly. With a tolerance, texts (names, plan, provenance) do not "
      "count.",
-     NULL, true, false, true, false},
+     NULL, true, false, true, false, false},
+    {"repack", "the same arrays with another compression", "parian-info repack",
+     "ASSET -o OUT.parian [--level N] [--codec CODEC]",
+     "Writes an asset anew with another compression. Every array stays the same; chunks that this "
+     "version does not know are copied as they are stored, and the minor version of the format "
+     "stays. OUT may be the asset itself.",
+     "Examples:\n  parian-info repack bunny.parian -o small.parian --level 19\n"
+     "  parian-info repack bunny.parian -o mapped.parian --codec raw",
+     inspect_repack, true, false, false, true, true},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
-static const char *const later_commands[] = {"atlas", "plot", "explain", "repack"};
+static const char *const later_commands[] = {"atlas", "plot", "explain"};
 
 static const command_entry *find_command(const char *name)
 {
@@ -71,10 +79,38 @@ static bool is_later(const char *name)
 /* ---- options ------------------------------------------------------------------------------------
  */
 
+static void add_repack_options(inspect_options *options, parian_option *table, size_t *count)
+{
+    options->level = 9;
+    table[(*count)++] = (parian_option){.name = "-o",
+                                        .alias = "--output",
+                                        .kind = PARIAN_OPTION_STRING,
+                                        .value = &options->output,
+                                        .argument = "FILE",
+                                        .help = "The asset to write."};
+    table[(*count)++] =
+        (parian_option){.name = "--level",
+                        .kind = PARIAN_OPTION_COUNT,
+                        .value = &options->level,
+                        .argument = "N",
+                        .minimum = 1,
+                        .maximum = 19,
+                        .help = "Level of zstd (9; parian-bake writes with 1). Higher is smaller "
+                                "and slower to write; reading takes as long."};
+    table[(*count)++] = (parian_option){
+        .name = "--codec",
+        .kind = PARIAN_OPTION_CHOICE,
+        .value = &options->codec,
+        .choices = "default|keep|raw|zstd|shuffle|delta",
+        .help = "How arrays are stored: as parian-bake does (default); each as in ASSET; without "
+                "compression, so that they can be mapped; zstd alone; bytes by significance, then "
+                "zstd; differences (reals: shuffle), then zstd."};
+}
+
 static parian_result parse_command(const command_entry *entry, int argc, char **argv,
                                    inspect_options *options)
 {
-    parian_option table[3];
+    parian_option table[4];
     size_t count = 0;
     if (entry->takes_json) {
         table[count++] = (parian_option){.name = "--json",
@@ -108,6 +144,9 @@ static parian_result parse_command(const command_entry *entry, int argc, char **
             .help = "Values may differ by T times the array's largest absolute value (0: "
                     "not at all)."};
     }
+    if (entry->takes_codec) {
+        add_repack_options(options, table, &count);
+    }
     const parian_command command = {.tool = entry->tool,
                                     .usage = entry->usage,
                                     .summary = entry->summary,
@@ -136,6 +175,9 @@ static parian_result check_arguments(const command_entry *entry, const inspect_o
     }
     if (entry->takes_chunk && (!options->chunk || !options->output)) {
         return refuse(entry, "needs --chunk NAME and -o FILE");
+    }
+    if (entry->takes_codec && (!options->output || strcmp(options->output, "-") == 0)) {
+        return refuse(entry, "needs -o FILE, which cannot be stdout");
     }
     return PARIAN_OK;
 }

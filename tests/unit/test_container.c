@@ -277,9 +277,57 @@ static void element_names(void **state)
     assert_null(parian_codec_name((parian_codec)9));
 }
 
+/* A chunk of several blocks goes over as it is stored, and what is damaged does not. */
+static void copies_keep_stored_blocks(void **state)
+{
+    (void)state;
+    enum { COUNT = 700000 };
+    const char *first = test_scratch("first.parian"), *second = test_scratch("second.parian");
+    const parian_chunk_info info =
+        describe("a", PARIAN_ELEMENT_U32, PARIAN_CODEC_SHUFFLE_ZSTD, COUNT);
+    uint32_t *data = malloc(COUNT * sizeof *data);
+    parian_reader *reader, *copy;
+    assert_non_null(data);
+    fill(data, COUNT * sizeof *data, 5);
+    parian_writer *writer = begin(NULL, first, false);
+    assert_int_equal(parian_writer_chunk(writer, &info, data), PARIAN_OK);
+    assert_int_equal(parian_writer_finish(writer), PARIAN_OK);
+    assert_int_equal(parian_reader_open(NULL, first, NULL, &reader), PARIAN_OK);
+    writer = begin(NULL, second, true);
+    assert_int_equal(parian_writer_copy(writer, reader, 0), PARIAN_OK);
+    assert_int_equal(parian_writer_finish(writer), PARIAN_OK);
+    assert_int_equal(parian_reader_open(NULL, second, NULL, &copy), PARIAN_OK);
+    check_chunk(copy, &info, data, COUNT * sizeof *data);
+    assert_memory_equal(parian_reader_chunk(copy, 0), parian_reader_chunk(reader, 0),
+                        sizeof(parian_chunk_info));
+    writer = begin(NULL, second, false);
+    assert_int_equal(parian_writer_copy(writer, reader, 0), PARIAN_OK);
+    assert_int_equal(parian_writer_copy(writer, reader, 0), PARIAN_E_ARGUMENT); /* twice */
+    parian_writer_abort(writer);
+    writer = begin(NULL, second, false);
+    assert_int_equal(parian_writer_copy(writer, reader, 1), PARIAN_E_ARGUMENT); /* not there */
+    parian_writer_abort(writer);
+    parian_reader_close(reader);
+    parian_reader_close(copy);
+
+    uint8_t *bytes;
+    size_t size;
+    assert_int_equal(parian_file_read(NULL, first, UINT64_MAX, &bytes, &size), PARIAN_OK);
+    bytes[1000] ^= 1;
+    assert_int_equal(parian_reader_open_memory(NULL, "damaged", bytes, size, NULL, &reader),
+                     PARIAN_OK);
+    writer = begin(NULL, second, false);
+    assert_int_equal(parian_writer_copy(writer, reader, 0), PARIAN_E_FORMAT);
+    parian_writer_abort(writer);
+    parian_reader_close(reader);
+    free(bytes);
+    free(data);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(copies_keep_stored_blocks),
         cmocka_unit_test(every_element_codec_and_size),
         cmocka_unit_test(shapes_names_and_flags),
         cmocka_unit_test(raw_is_mapped_without_a_copy),
