@@ -9,6 +9,7 @@
 
 #include "bake/pipeline/bake.h"
 #include "bake/stages/detail.h"
+#include "bake/stages/rounding.h"
 #include "bake/stages/surface.h"
 #include "bake/stages/texels.h"
 #include "core/memory.h"
@@ -155,6 +156,11 @@ static parian_result step_detail(const parian_env *env, body_job *job)
     return r;
 }
 
+static parian_result step_rounding(const parian_env *env, body_job *job)
+{
+    return parian_stage_rounding(env, job->body);
+}
+
 static parian_result step_global(const parian_env *env, body_job *job)
 {
     parian_global_desc desc = {.threshold = job->desc->threshold,
@@ -169,7 +175,11 @@ static parian_result step_global(const parian_env *env, body_job *job)
 
 static parian_result step_blend(const parian_env *env, body_job *job)
 {
-    return parian_blend_make(env, job->body, &job->report->blend);
+    parian_result r = parian_blend_make(env, job->body, &job->report->blend);
+    if (r == PARIAN_OK) {
+        parian_round_blend(job->body);
+    }
+    return r;
 }
 
 static parian_result step_local(const parian_env *env, body_job *job)
@@ -183,8 +193,9 @@ static const struct {
 } STEPS[] = {{"surface", step_surface}, {"transfer mesh", step_transfer_mesh},
              {"atlas", step_atlas},     {"texels", step_texels},
              {"plan", step_plan},       {"thickness", step_thickness},
-             {"detail", step_detail},   {"global", step_global},
-             {"blend", step_blend},     {"local", step_local}};
+             {"detail", step_detail},   {"rounding", step_rounding},
+             {"global", step_global},   {"blend", step_blend},
+             {"local", step_local}};
 
 static void init_body(const parian_bake_desc *desc, const parian_source_part *part,
                       const parian_medium *medium, parian_body *body)

@@ -14,7 +14,7 @@
 #include "container/container_output.h"
 #include "core/memory.h"
 
-enum { LANE_MAX = 16, LEVEL_DEFAULT = 1, LEVEL_MAX = 19 };
+enum { LANE_MAX = 16, LEVEL_DEFAULT = 3, LEVEL_MAX = 19 };
 
 /* One block of a batch: what a thread codes it with, and what came out. */
 typedef struct lane {

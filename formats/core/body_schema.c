@@ -30,10 +30,10 @@ const parian_schema_array parian_body_arrays[] = {
     {"vertex.position", F32, SHUFFLE, WHEN_ALWAYS, BODY(vertex_position), 2, {COUNT_VERTEX, 3}},
     {"triangle.vertex", U32, DELTA, WHEN_ALWAYS, BODY(triangle), 2, {COUNT_TRIANGLE, 3}},
     {"triangle.chart", U32, DELTA, WHEN_ALWAYS, BODY(triangle_chart), 1, {COUNT_TRIANGLE}},
-    {"corner.normal", F32, SHUFFLE, WHEN_ALWAYS, BODY(corner_normal), 3, {COUNT_TRIANGLE, 3, 3}},
-    {"corner.uv", F32, SHUFFLE, WHEN_ALWAYS, BODY(corner_uv), 3, {COUNT_TRIANGLE, 3, 2}},
+    {"corner.normal", F32, ZSTD, WHEN_ALWAYS, BODY(corner_normal), 3, {COUNT_TRIANGLE, 3, 3}},
+    {"corner.uv", F32, ZSTD, WHEN_ALWAYS, BODY(corner_uv), 3, {COUNT_TRIANGLE, 3, 2}},
     {"texel.index", U32, DELTA, WHEN_ALWAYS, BODY(texel_index), 1, {COUNT_TEXEL}},
-    {"texel.triangle", U32, DELTA, WHEN_ALWAYS, BODY(texel_triangle), 1, {COUNT_TEXEL}},
+    {"texel.triangle", U32, ZSTD, WHEN_ALWAYS, BODY(texel_triangle), 1, {COUNT_TEXEL}},
     {"texel.barycentric", F32, SHUFFLE, WHEN_ALWAYS, BODY(texel_barycentric), 2, {COUNT_TEXEL, 2}},
     {"texel.area", F32, SHUFFLE, WHEN_ALWAYS, BODY(texel_area), 1, {COUNT_TEXEL}},
     {"texel.normal_map", F32, SHUFFLE, WHEN_PRESENT, BODY(texel_normal_map), 2, {COUNT_TEXEL, 3}},
@@ -65,7 +65,7 @@ const parian_schema_array parian_operator_arrays[] = {
 const parian_schema_array parian_surrounding_arrays[] = {
     {"surrounding.position", F32, SHUFFLE, WHEN_ALWAYS, SURROUNDING(vertex_position), 2, {COUNT_VERTEX, 3}},
     {"surrounding.triangle", U32, DELTA, WHEN_ALWAYS, SURROUNDING(triangle), 2, {COUNT_TRIANGLE, 3}},
-    {"surrounding.corner_normal", F32, SHUFFLE, WHEN_ALWAYS, SURROUNDING(corner_normal), 3, {COUNT_TRIANGLE, 3, 3}},
+    {"surrounding.corner_normal", F32, ZSTD, WHEN_ALWAYS, SURROUNDING(corner_normal), 3, {COUNT_TRIANGLE, 3, 3}},
     {"surrounding.reflectance", F32, RAW, WHEN_ALWAYS, true, offsetof(parian_surrounding, reflectance), 1, {3}},
     {NULL, U16, RAW, WHEN_ALWAYS, false, 0, 0, {0}}};
 /* clang-format on */

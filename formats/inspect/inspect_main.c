@@ -95,7 +95,7 @@ static void add_repack_options(inspect_options *options, parian_option *table, s
                         .argument = "N",
                         .minimum = 1,
                         .maximum = 19,
-                        .help = "Level of zstd (9; parian-bake writes with 1). Higher is smaller "
+                        .help = "Level of zstd (9; parian-bake writes with 3). Higher is smaller "
                                 "and slower to write; reading takes as long."};
     table[(*count)++] = (parian_option){
         .name = "--codec",

@@ -82,7 +82,7 @@ typedef struct parian_reader parian_reader;
 
 typedef struct parian_writer_desc {
     const char *path;      /* target; the bytes go to a temporary file beside it first */
-    int compression_level; /* zstd level, 1 to 19; 0 takes 1 */
+    int compression_level; /* zstd level, 1 to 19; 0 takes 3 */
     bool no_compression;   /* every chunk raw */
     uint32_t version_minor; /* the file states at least this one; 0: the lowest that has what is written */
 } parian_writer_desc;
