@@ -77,16 +77,40 @@ static void delta_shuffle(size_t width, const uint8_t *plain, size_t count, uint
     }
 }
 
+/* Replace each element by the sum of all up to it: written for each width, for speed. */
+static void sum_up_2(uint8_t *plain, size_t count)
+{
+    uint16_t sum = 0, value;
+    for (size_t i = 0; i < count; i++) {
+        memcpy(&value, plain + 2 * i, sizeof value);
+        sum = (uint16_t)(sum + value);
+        memcpy(plain + 2 * i, &sum, sizeof sum);
+    }
+}
+
+static void sum_up_4(uint8_t *plain, size_t count)
+{
+    uint32_t sum = 0, value;
+    for (size_t i = 0; i < count; i++) {
+        memcpy(&value, plain + 4 * i, sizeof value);
+        sum += value;
+        memcpy(plain + 4 * i, &sum, sizeof sum);
+    }
+}
+
 static void undelta_shuffle(size_t width, const uint8_t *planes, size_t count, uint8_t *plain)
 {
-    uint64_t value = 0;
-    for (size_t i = 0; i < count; i++) {
-        uint64_t difference = 0;
-        for (size_t j = 0; j < width; j++) {
-            difference |= (uint64_t)planes[j * count + i] << (8 * j);
+    unshuffle(width, planes, count, plain);
+    if (width == 2) {
+        sum_up_2(plain, count);
+    } else if (width == 4) {
+        sum_up_4(plain, count);
+    } else {
+        uint64_t sum = 0;
+        for (size_t i = 0; i < count; i++) {
+            sum += load_element(width, plain + i * width);
+            memcpy(plain + i * width, &sum, width);
         }
-        value += difference;
-        memcpy(plain + i * width, &value, width);
     }
 }
 

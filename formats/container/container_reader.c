@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: MIT
  */
 #include <inttypes.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #include <xxhash.h>
@@ -173,11 +174,17 @@ int64_t parian_reader_find(const parian_reader *reader, const char *name, uint32
 enum { LANE_MAX = 16 };
 
 typedef struct lane {
+    int rule;       /* of the first finding, or 0 */
+    uint64_t block; /* where */
+} lane;
+
+/* What a lane works with. A lane that begins takes the first that is free, so that few threads
+ * touch few of them. */
+typedef struct workplace {
+    atomic_int taken;
     parian_block_coder coder;
     uint8_t *decoded; /* a block, where no destination is given; or NULL */
-    int rule;         /* of the first finding, or 0 */
-    uint64_t block;   /* where */
-} lane;
+} workplace;
 
 typedef struct read_job {
     const parian_reader *reader;
@@ -186,9 +193,10 @@ typedef struct read_job {
     uint8_t *destination; /* NULL: check alone */
     size_t lane_count;
     lane lanes[LANE_MAX];
+    workplace places[LANE_MAX];
 } read_job;
 
-static int read_block(const read_job *job, lane *mine, uint64_t index)
+static int read_block(const read_job *job, workplace *mine, uint64_t index)
 {
     const parian_reader *reader = job->reader;
     uint64_t block = job->first_block + index;
@@ -212,14 +220,26 @@ static int read_block(const read_job *job, lane *mine, uint64_t index)
     return 0;
 }
 
+/* There are as many as lanes: one is free. */
+static workplace *take_workplace(read_job *job)
+{
+    for (size_t i = 0;; i = (i + 1) % job->lane_count) {
+        if (!atomic_exchange(&job->places[i].taken, 1)) {
+            return &job->places[i];
+        }
+    }
+}
+
 static void read_lane(void *context, size_t index)
 {
     read_job *job = context;
     lane *mine = &job->lanes[index];
+    workplace *place = take_workplace(job);
     for (uint64_t b = index; b < job->block_count && mine->rule == 0; b += job->lane_count) {
-        mine->rule = read_block(job, mine, b);
+        mine->rule = read_block(job, place, b);
         mine->block = b;
     }
+    atomic_store(&place->taken, 0);
 }
 
 static parian_result create_lanes(const parian_env *env, read_job *job)
@@ -230,10 +250,10 @@ static parian_result create_lanes(const parian_env *env, read_job *job)
         return PARIAN_OK;
     }
     for (size_t i = 0; i < job->lane_count; i++) {
-        if (parian_block_decoder_create(env, size, &job->lanes[i].coder) != PARIAN_OK) {
+        if (parian_block_decoder_create(env, size, &job->places[i].coder) != PARIAN_OK) {
             return PARIAN_E_NOMEM;
         }
-        if (!job->destination && !PARIAN_NEW(env, job->lanes[i].decoded, size)) {
+        if (!job->destination && !PARIAN_NEW(env, job->places[i].decoded, size)) {
             return PARIAN_E_NOMEM;
         }
     }
@@ -281,8 +301,8 @@ static parian_result read_blocks(const parian_reader *reader, uint32_t index, vo
         result = report_finding(&job);
     }
     for (size_t i = 0; i < job.lane_count; i++) {
-        parian_block_decoder_destroy(env, &job.lanes[i].coder);
-        parian_free(env, job.lanes[i].decoded);
+        parian_block_decoder_destroy(env, &job.places[i].coder);
+        parian_free(env, job.places[i].decoded);
     }
     return result;
 }
@@ -298,16 +318,31 @@ parian_result parian_reader_check(const parian_reader *reader, uint32_t index)
     return read_blocks(reader, index, NULL);
 }
 
-parian_result parian_reader_map(const parian_reader *reader, uint32_t index, const void **data)
+parian_result parian_reader_map_unverified(const parian_reader *reader, uint32_t index,
+                                           const void **data)
 {
     const parian_chunk_info *info = parian_reader_chunk(reader, index);
-    if (info && info->codec != PARIAN_CODEC_RAW) {
+    if (!info) {
+        return parian_fail(&reader->env, PARIAN_E_ARGUMENT, "%s: there is no chunk %u",
+                           reader->name, index);
+    }
+    if (info->codec != PARIAN_CODEC_RAW) {
         return parian_fail(&reader->env, PARIAN_E_UNSUPPORTED,
                            "%s: chunk %s is coded and cannot be mapped", reader->name, info->name);
     }
-    parian_result result = read_blocks(reader, index, NULL);
+    *data = reader->file.data + info->offset;
+    return PARIAN_OK;
+}
+
+parian_result parian_reader_map(const parian_reader *reader, uint32_t index, const void **data)
+{
+    const void *view = NULL;
+    parian_result result = parian_reader_map_unverified(reader, index, &view);
     if (result == PARIAN_OK) {
-        *data = reader->file.data + info->offset;
+        result = read_blocks(reader, index, NULL);
+    }
+    if (result == PARIAN_OK) {
+        *data = view;
     }
     return result;
 }

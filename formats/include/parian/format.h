@@ -148,6 +148,8 @@ parian_result parian_reader_check(const parian_reader *reader, uint32_t index);
 /* Pointer into the mapping of a RAW chunk after its blocks' checksums were verified, without a copy; valid
  * until close. PARIAN_E_UNSUPPORTED for a coded chunk. */
 parian_result parian_reader_map(const parian_reader *reader, uint32_t index, const void **data);
+/* The same without a look at the blocks: for files that were verified before, since damage goes unnoticed. */
+parian_result parian_reader_map_unverified(const parian_reader *reader, uint32_t index, const void **data);
 /* Verify everything that can be verified without the schema: what open has verified (header, table, zero
  * padding, no stray or overlapping bytes), and every block. The first finding is logged with its rule number
  * and byte offset. */
